@@ -302,7 +302,10 @@ impl Model {
         if let NodeKind::Start = node.kind {
             // A loop begins where its first touch lands; a disc that is there already is on its way apart.
             let landed = events.iter().position(|event| is_there(event.after.as_ref()));
-            let behind = landed.map_or_else(|| behind(events, s, "unloading"), |at| at + 1);
+            // Without adhesion the contact grows from nothing: the walk begins a little after the touch.
+            let touched =
+                || events.iter().position(|event| event.kind == "first-touch" && !self.is_start(node));
+            let behind = landed.or_else(touched).map_or_else(|| behind(events, s, "unloading"), |at| at + 1);
             return (if from_disc { 0 } else { behind }, false);
         }
         let begins = events.iter().position(|event| is_there(event.before.as_ref()));

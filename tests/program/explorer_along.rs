@@ -255,3 +255,17 @@ fn another_beginning_starts_the_walk_again() {
         assert!(!matches!(session.model.history.current().unwrap().kind, NodeKind::Start), "{keys:?}");
     }
 }
+
+/// Without adhesion the contact grows from nothing, and the walk begins where no event of the path ends.
+#[test]
+fn without_adhesion_only_the_touch_has_happened() {
+    let mut session = Session::with("wavy-sphere", &["material.work_of_adhesion=0", "path.begin=apart"]);
+    let done = |session: &Session| {
+        let entries = session.model.log().entries;
+        entries.iter().take_while(|entry| entry.mark == EventMark::Done).count()
+    };
+    assert_eq!(session.model.path_events()[0].kind, "first-touch");
+    assert_eq!(done(&session), 1);
+    session.does(Id::NextEvent);
+    assert!((1..4).contains(&done(&session)), "{}", session.status());
+}

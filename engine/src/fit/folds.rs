@@ -58,7 +58,7 @@ impl FitProblem {
         };
         let share = |(i, foot): (usize, &Option<Nearest>)| match foot {
             Some(foot) if turns(foot, usize::from(self.data[i].segment == Segment::Retraction)) => {
-                let way = self.way_to_next(i) * weights[0];
+                let way = self.way_to_neighbour(i) * weights[0];
                 1.0 / (1.0 + way * way / 3.0).sqrt()
             }
             _ => 1.0,
@@ -68,7 +68,7 @@ impl FitProblem {
 
     /// The distance in x from a row to that of its two neighbours on its branch that is further off; infinite where one
     /// is missing.
-    fn way_to_next(&self, i: usize) -> f64 {
+    fn way_to_neighbour(&self, i: usize) -> f64 {
         let datum = &self.data[i];
         let to = |j: Option<usize>| {
             let other = j.and_then(|j| self.data.get(j)).filter(|other| other.branch == datum.branch);

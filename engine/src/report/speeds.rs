@@ -126,10 +126,11 @@ impl SpeedsReport {
         notes.push(used(&reading, preset, branches.turned));
         let mut rows = Vec::new();
         let mut noises = Vec::new();
-        let mut ambiguous = 0;
+        let [mut ambiguous, mut contrary] = [0; 2];
         for branch in &branches.list {
             let read = BranchReading::of(&reading, branch);
             ambiguous += read.ambiguous;
+            contrary += read.contrary;
             let (of_branch, noise) = read.rows();
             rows.extend(of_branch);
             noises.extend(noise);
@@ -140,7 +141,7 @@ impl SpeedsReport {
         let mut warnings = case.warnings_of_problem();
         warnings.extend(branches.swapped().into_iter().chain(branches.doubt()).chain(doubt));
         warnings.extend(doubt_of_baseline(&reading, preset, &branches));
-        warnings.extend(doubts_of_rows(of_file.len() - rows.len(), ambiguous));
+        warnings.extend(doubts_of_rows(of_file.len() - rows.len(), ambiguous, contrary));
         if rows.iter().all(|row| row.speed.is_none()) {
             notes.push("no column gives the times, so no row has a speed".to_owned());
         }
@@ -164,8 +165,8 @@ impl SpeedsReport {
     }
 }
 
-/// Sentences on rows without a contact, and on those that have several.
-fn doubts_of_rows(left_out: usize, ambiguous: usize) -> Vec<String> {
+/// Sentences on rows without a contact, on those that have several, and on those whose contact noise has taken away.
+fn doubts_of_rows(left_out: usize, ambiguous: usize, contrary: usize) -> Vec<String> {
     let mut doubts = Vec::new();
     if left_out > 0 {
         doubts.push(format!(
@@ -174,8 +175,14 @@ fn doubts_of_rows(left_out: usize, ambiguous: usize) -> Vec<String> {
     }
     if ambiguous > 0 {
         doubts.push(format!(
-            "{ambiguous} rows have the force and the approach of several contacts: G is that of the one whose radius is \
-             nearest to those of the rows around it, and may be wrong. A column of contact radii would tell"
+            "{ambiguous} rows have the force and the approach of several contacts: those are taken between which the radius \
+             jumps least, and G may be wrong. A column of contact radii would tell"
+        ));
+    }
+    if contrary > 0 {
+        doubts.push(format!(
+            "the contact radius jumps {contrary} times against the direction of its branch: noise hides the contact of some \
+             rows, and their G is that of another one. A column of contact radii would tell"
         ));
     }
     doubts

@@ -36,8 +36,10 @@ pub struct SpeedRow {
 pub(super) struct BranchReading {
     found: Vec<(MeasuredPoint, Released)>,
     segment: Segment,
-    /// How many of them have several contacts.
+    /// How many of them could be in another contact.
     pub(super) ambiguous: usize,
+    /// How often the radius jumps against the direction of the branch.
+    pub(super) contrary: usize,
 }
 
 impl BranchReading {
@@ -47,7 +49,7 @@ impl BranchReading {
         points.sort_by_key(|point| point.at);
         if reading.pair != MeasuredPair::ForceApproach {
             let found = points.into_iter().filter_map(|point| Some((point, reading.released(&point)?)));
-            return Self { found: found.collect(), segment: branch.segment, ambiguous: 0 };
+            return Self { found: found.collect(), segment: branch.segment, ambiguous: 0, contrary: 0 };
         }
         let mut rows: Vec<(MeasuredPoint, Vec<Released>)> =
             points.into_iter().map(|point| (point, reading.all_released(&point))).collect();
@@ -68,9 +70,10 @@ impl BranchReading {
             of_row.iter().enumerate().any(|(at, candidate)| at != **taken && candidate.holds)
         };
         let ambiguous = all.iter().zip(&taken).filter(is_open).count();
+        let contrary = contrary(&all, &taken, branch.segment);
         let found =
             rows.iter().zip(taken).map(|((point, released), taken)| (*point, released[taken])).collect();
-        Self { found, segment: branch.segment, ambiguous }
+        Self { found, segment: branch.segment, ambiguous, contrary }
     }
 
     /// The rows with their speeds, and the noise of their contact radii.
@@ -108,6 +111,32 @@ struct PossibleContact {
     holds: bool,
 }
 
+/// The largest step between two contacts that may be noise.
+fn noise_of(a: &PossibleContact, b: &PossibleContact) -> f64 {
+    /// In standard deviations.
+    const NOISE: f64 = 4.0;
+    NOISE * hypot(a.spread, b.spread)
+}
+
+/// The distance of a candidate from the nearest other one of its row; infinite where it is the only one.
+fn alone(of_row: &[PossibleContact], at: usize) -> f64 {
+    let others = of_row.iter().enumerate().filter(|(other, _)| *other != at);
+    others.map(|(_, other)| (other.radius - of_row[at].radius).abs()).fold(f64::INFINITY, f64::min)
+}
+
+/// How often the radius jumps outward on a retraction, or inward on an approach, by at least half the least distance
+/// between two contacts of a row: an edge does not, so noise has taken the contact of some rows away.
+fn contrary(rows: &[Vec<PossibleContact>], taken: &[usize], segment: Segment) -> usize {
+    let least = rows.iter().map(|of_row| alone(of_row, 0)).fold(f64::INFINITY, f64::min);
+    let found: Vec<&PossibleContact> = rows.iter().zip(taken).map(|(of_row, at)| &of_row[*at]).collect();
+    let jumps = |pair: &&[&PossibleContact]| {
+        let outward = pair[1].radius - pair[0].radius;
+        let contrary = if segment == Segment::Retraction { outward } else { -outward };
+        contrary > (0.5 * least).max(noise_of(pair[0], pair[1]))
+    };
+    found.windows(2).filter(jumps).count()
+}
+
 /// Of the candidates of each row, by their radii, the number of the one with which the radius jumps least over all rows; of
 /// equals the largest.
 ///
@@ -115,12 +144,6 @@ struct PossibleContact {
 /// steps would only find the one that depends least on the noise. One that overlaps in all rows where another does not costs a
 /// jump of its own size: a state that cannot last may still be passed through.
 fn steadiest(rows: &[Vec<PossibleContact>]) -> Vec<usize> {
-    /// Steps of so many standard deviations are noise.
-    const NOISE: f64 = 4.0;
-    let alone = |of_row: &[PossibleContact], at: usize| {
-        let others = of_row.iter().enumerate().filter(|(other, _)| *other != at);
-        others.map(|(_, other)| (other.radius - of_row[at].radius).abs()).fold(f64::INFINITY, f64::min)
-    };
     // The least way of the jumps up to each candidate of a row, and the candidate of the previous row that it comes from.
     let mut ways: Vec<Vec<(f64, usize)>> = Vec::new();
     for (i, of_row) in rows.iter().enumerate() {
@@ -131,7 +154,7 @@ fn steadiest(rows: &[Vec<PossibleContact>]) -> Vec<usize> {
                 let [a, b] = [&previous[from], &of_row[to]];
                 let step = (b.radius - a.radius).abs();
                 let is_near = step < 0.5 * alone(previous, from).min(alone(of_row, to));
-                if is_near { 0.0 } else { (step - NOISE * hypot(a.spread, b.spread)).max(0.0) }
+                if is_near { 0.0 } else { (step - noise_of(a, b)).max(0.0) }
             };
             let overlaps = any_holds && !of_row[to].holds;
             let cost = if overlaps { of_row[to].radius / rows.len() as f64 } else { 0.0 };
@@ -155,7 +178,7 @@ fn steadiest(rows: &[Vec<PossibleContact>]) -> Vec<usize> {
 
 #[cfg(test)]
 mod tests {
-    use super::{PossibleContact, steadiest};
+    use super::{PossibleContact, Segment, contrary, steadiest};
 
     /// Rows of candidates with these radii, all admissible and with the noise 0.01.
     fn taken(rows: &[Vec<f64>]) -> Vec<usize> {
@@ -183,6 +206,23 @@ mod tests {
         };
         let rows: Vec<_> = (0..4200).map(row).collect();
         assert!(taken(&rows).iter().zip(&rows).all(|(taken, row)| *taken + 1 == row.len()));
+    }
+
+    #[test]
+    fn a_jump_against_the_direction_of_the_branch_is_counted() {
+        let one = |radius| PossibleContact { radius, spread: 0.01, holds: true };
+        let rows = |radii: &[&[f64]]| -> Vec<Vec<PossibleContact>> {
+            radii.iter().map(|row| row.iter().copied().map(one).collect()).collect()
+        };
+        // The third row has lost the contact at 2.
+        let all = rows(&[&[1.0, 2.0], &[1.0, 2.0], &[1.0], &[1.0, 2.0], &[1.9]]);
+        assert_eq!(contrary(&all, &[1, 1, 0, 1, 0], Segment::Retraction), 1);
+        // A snap inward, and the same on an approach.
+        assert_eq!(contrary(&all, &[1, 0, 0, 0, 0], Segment::Retraction), 1);
+        assert_eq!(contrary(&all[..4], &[1, 0, 0, 0], Segment::Retraction), 0);
+        assert_eq!(contrary(&all[..4], &[1, 0, 0, 0], Segment::Approach), 1);
+        // With one contact at every row there is nothing to mistake.
+        assert_eq!(contrary(&rows(&[&[2.0], &[1.0], &[2.0]]), &[0, 0, 0], Segment::Retraction), 0);
     }
 
     #[test]
