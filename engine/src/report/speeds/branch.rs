@@ -132,7 +132,9 @@ fn contrary(rows: &[Vec<PossibleContact>], taken: &[usize], segment: Segment) ->
     let jumps = |pair: &&[&PossibleContact]| {
         let outward = pair[1].radius - pair[0].radius;
         let contrary = if segment == Segment::Retraction { outward } else { -outward };
-        contrary > (0.5 * least).max(noise_of(pair[0], pair[1]))
+        // Where the edge hardly pulls, the radius is known so badly that any jump would be noise.
+        let surer = if pair[0].spread < pair[1].spread { pair[0] } else { pair[1] };
+        contrary > (0.5 * least).max(noise_of(surer, surer))
     };
     found.windows(2).filter(jumps).count()
 }
