@@ -20,7 +20,7 @@ use pulloff_engine::report::number::{short, significant};
 use pulloff_engine::sweep::axis::SweepAxis;
 use pulloff_engine::sweep::spec::Design;
 use pulloff_engine::sweep::{QUANTITIES, QuantityColumn, Spec};
-use pulloff_engine::text::{quote, show_name, show_path};
+use pulloff_engine::text::{counted, quote, show_name, show_path};
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
@@ -166,7 +166,12 @@ fn merged(parts: &[PathBuf], results: &ResultsArguments, console: &Console) -> R
         outputs.file(OUTPUT, &sidecar::path(rows))?;
     }
     let merged = ensemble::join(&parts, output, results.existing())?;
-    console.say(&format!("{} rows of {} shards in {}", merged.rows, parts.len(), stream::shown(rows)));
+    console.say(&format!(
+        "{} of {} in {}",
+        counted(merged.rows, "row"),
+        counted(parts.len(), "shard"),
+        stream::shown(rows)
+    ));
     with_an_error(&merged.faults, console);
     fruitful(merged.faults.failures < merged.rows, console)
 }
@@ -195,7 +200,8 @@ fn checked(results: &Path, console: &Console) -> Result<ExitCode, Failure> {
     let shard =
         if found.shard == Shard::WHOLE { String::new() } else { format!(" of shard {}", found.shard) };
     let state = if found.rows == found.of { "complete" } else { "the same command goes on from there" };
-    let mut text = format!("{}: {} of {} rows{shard}, {state}\n", show_path(results), found.rows, found.of);
+    let mut text =
+        format!("{}: {} of {}{shard}, {state}\n", show_path(results), found.rows, counted(found.of, "row"));
     let faults: Vec<String> =
         found.faults.reasons.iter().map(|(reason, n)| format!("{n} {reason}")).collect();
     // Writing to a String cannot fail.
@@ -212,7 +218,7 @@ fn checked(results: &Path, console: &Console) -> Result<ExitCode, Failure> {
     output::print(text)?;
     with_an_error(&found.faults, console);
     if found.rows < found.of {
-        return Err(Failure::Incomplete(format!("{} of {} rows are present", found.rows, found.of)));
+        return Err(Failure::Incomplete(format!("{} of {} present", found.rows, counted(found.of, "row"))));
     }
     fruitful(!found.is_failure(), console)
 }
@@ -309,7 +315,7 @@ impl Sweep {
                 } else {
                     ", all kept; the same command goes on from there"
                 };
-                let text = format!("stopped with {rows} of {} rows{kept}", summary.of);
+                let text = format!("stopped with {rows} of {}{kept}", counted(summary.of, "row"));
                 Err(Failure::Interrupted { signal, text })
             }
         }
@@ -368,11 +374,12 @@ impl Sweep {
         let kept =
             if summary.before > 0 { format!(" ({} from before)", summary.before) } else { String::new() };
         let rows_in = ensemble::file_of_rows(&self.results.output, spec);
-        let mut text = format!("{rows} of {} rows in {}{kept}", summary.of, stream::shown(&rows_in));
+        let mut text =
+            format!("{rows} of {} in {}{kept}", counted(summary.of, "row"), stream::shown(&rows_in));
         let seconds = took.as_secs_f64();
         if summary.now > 0 && seconds > 0.0 {
             let rate = summary.now as f64 / seconds;
-            let threads = if jobs == 1 { "1 thread".to_owned() } else { format!("{jobs} threads") };
+            let threads = counted(jobs, "thread");
             // Writing to a String cannot fail.
             let _ = write!(text, "; {} s, {} rows/s on {threads}", short(seconds, 3), significant(rate, 3));
         }

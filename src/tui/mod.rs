@@ -51,7 +51,7 @@ use app::App;
 use held::Held as HeldKey;
 use keymap::Keymap;
 use look::Look;
-use pulloff_engine::text::sanitize;
+use pulloff_engine::text::{counted, sanitize};
 use ratatui::Frame;
 use slow_notice::SlowNotice;
 use std::io::{self, Write};
@@ -87,8 +87,7 @@ const SAVE_PATIENCE: Duration = Duration::from_secs(10);
 
 /// A session in words: its preset, and how much was walked.
 fn describe(held: &HeldSession) -> String {
-    let steps = held.summary.steps;
-    let steps = if steps == 1 { "1 step".to_owned() } else { format!("{steps} steps") };
+    let steps = counted(held.summary.steps, "step");
     format!("{}, {steps}", sanitize(&held.summary.preset_name, 24))
 }
 

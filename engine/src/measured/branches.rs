@@ -23,6 +23,7 @@ use super::role::Segment;
 use super::sigma::noise;
 use super::signs::{Orientation, UnsignedPoints, is_swapped};
 use super::turns::{by_time, one_way, rises, runs};
+use crate::text::counted;
 use thiserror::Error;
 
 /// If the median step of x from row to row exceeds this share of its range, the rows are in no order.
@@ -181,7 +182,7 @@ impl Points {
         let step = quantum(&points.iter().map(|point| point.force).collect::<Vec<_>>());
         let repeated = without_repeats(&mut points);
         if repeated > 0 {
-            notes.push(format!("{repeated} rows repeat the row before and are left out"));
+            notes.push(format!("left out: {} equal to the row before", counted(repeated, "row")));
         }
         let of_radius = self.abscissa == Abscissa::Radius;
         let looks_swapped = self.looks_swapped(&points, asked);

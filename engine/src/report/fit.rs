@@ -17,6 +17,7 @@ use crate::measured::asked::signs_text;
 use crate::measured::points::Turned;
 use crate::measured::{Abscissa, Origin};
 use crate::preset::Preset;
+use crate::text::counted;
 use crate::units::{Quantity, UnitSystem};
 use serde::Serialize;
 use std::fmt::Write;
@@ -545,9 +546,8 @@ impl FitReport {
         let (chi, fitted) = (short(self.chi_squared, 4), self.rows.fitted());
         let _ = writeln!(
             text,
-            "chi squared per point {chi}; {fitted} points, {} outlier{}",
-            self.outliers,
-            if self.outliers == 1 { "" } else { "s" }
+            "chi squared per point {chi}; {fitted} points, {}",
+            counted(self.outliers, "outlier")
         );
         let sigma = |quantity, axis: usize| {
             let told = super::number::with_unit(units, quantity, self.sigma[axis], true, |x| short(x, 3));

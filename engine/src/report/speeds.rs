@@ -30,6 +30,7 @@ use crate::preset::Preset;
 use crate::problem::Control;
 use crate::progress::Progress;
 use crate::quasistatic::admissible::Judge;
+use crate::text::counted;
 use crate::units::Quantity;
 use crate::units::number::said;
 use serde::Serialize;
@@ -126,10 +127,11 @@ impl SpeedsReport {
         notes.push(used(&reading, preset, branches.turned));
         let mut rows = Vec::new();
         let mut noises = Vec::new();
-        let [mut ambiguous, mut contrary] = [0; 2];
+        let [mut ambiguous, mut hidden, mut contrary] = [0; 3];
         for branch in &branches.list {
             let read = BranchReading::of(&reading, branch);
             ambiguous += read.ambiguous;
+            hidden += read.hidden;
             contrary += read.contrary;
             let (of_branch, noise) = read.rows();
             rows.extend(of_branch);
@@ -141,7 +143,7 @@ impl SpeedsReport {
         let mut warnings = case.warnings_of_problem();
         warnings.extend(branches.swapped().into_iter().chain(branches.doubt()).chain(doubt));
         warnings.extend(doubt_of_baseline(&reading, preset, &branches));
-        warnings.extend(doubts_of_rows(of_file.len() - rows.len(), ambiguous, contrary));
+        warnings.extend(doubts_of_rows(of_file.len() - rows.len() - hidden, ambiguous, hidden, contrary));
         if rows.iter().all(|row| row.speed.is_none()) {
             notes.push("no column gives the times, so no row has a speed".to_owned());
         }
@@ -166,23 +168,32 @@ impl SpeedsReport {
 }
 
 /// Sentences on rows without a contact, on those that have several, and on those whose contact noise has taken away.
-fn doubts_of_rows(left_out: usize, ambiguous: usize, contrary: usize) -> Vec<String> {
+fn doubts_of_rows(without: usize, ambiguous: usize, hidden: usize, contrary: usize) -> Vec<String> {
     let mut doubts = Vec::new();
-    if left_out > 0 {
+    if without > 0 {
         doubts.push(format!(
-            "{left_out} rows in contact are left out: no contact with tension at its edge has their force there"
+            "{} in contact left out: no contact with tension at its edge has the force there",
+            counted(without, "row")
         ));
     }
     if ambiguous > 0 {
         doubts.push(format!(
-            "{ambiguous} rows have the force and the approach of several contacts: those are taken between which the radius \
-             jumps least, and G may be wrong. A column of contact radii would tell"
+            "{} with the force and the approach of several contacts: those are taken between which the radius jumps least, \
+             and G may be wrong. A column of contact radii would tell",
+            counted(ambiguous, "row")
+        ));
+    }
+    if hidden > 0 {
+        doubts.push(format!(
+            "{} left out: no contact is near that of the rows before and after, as noise hides it",
+            counted(hidden, "row")
         ));
     }
     if contrary > 0 {
         doubts.push(format!(
-            "the contact radius jumps {contrary} times against the direction of its branch: noise hides the contact of some \
-             rows, and their G is that of another one. A column of contact radii would tell"
+            "the contact radius jumps {} against the direction of its branch: noise hides the contact of some \
+             rows, and their G is that of another one. A column of contact radii would tell",
+            counted(contrary, "time")
         ));
     }
     doubts

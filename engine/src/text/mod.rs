@@ -7,5 +7,5 @@ mod suggest;
 
 pub use decode::{NotText, decode};
 pub use headline::headline;
-pub use quote::{greek, is_unsafe, listed, quote, sanitize, show_name, show_path};
+pub use quote::{counted, greek, is_unsafe, listed, quote, sanitize, show_name, show_path};
 pub use suggest::{closest, closest_key};

@@ -37,6 +37,11 @@ pub fn sanitize(text: &str, max: usize) -> String {
     short
 }
 
+/// A count with its noun: 1 row, 2 rows.
+pub fn counted<N: fmt::Display + PartialEq + From<u8>>(count: N, noun: &str) -> String {
+    if count == N::from(1) { format!("1 {noun}") } else { format!("{count} {noun}s") }
+}
+
 /// A label from the parameter table with its Greek letters.
 pub fn greek(label: &str) -> String {
     label.replace("gamma", "γ").replace("lambda", "λ").replace("delta", "δ")

@@ -16,7 +16,7 @@ use pulloff_engine::preset::schema::{Kind, NONE, RADIUS_OVER_CURVATURE, START_KE
 use pulloff_engine::preset::{Preset, Row, Value, groups};
 use pulloff_engine::problem::Start;
 use pulloff_engine::report::number::{short, with_unit};
-use pulloff_engine::text::{closest, greek, show_name, show_path};
+use pulloff_engine::text::{closest, counted, greek, show_name, show_path};
 use pulloff_engine::units::{Quantity, UnitSystem, parse_quantity};
 use std::path::Path;
 use std::sync::Arc;
@@ -301,7 +301,7 @@ pub(super) fn rows_came(model: &mut Model, rows: Arc<ProfileRows>) -> Vec<Effect
         note.strip_prefix(&*whole).and_then(|note| note.strip_prefix(": ")).unwrap_or(note).to_owned()
     });
     let name = path.file_name().map_or_else(String::new, |name| show_name(&name.to_string_lossy()));
-    let read = format!("{name}: {} rows", rows.radii.len());
+    let read = format!("{name}: {}", counted(rows.radii.len(), "row"));
     let said = std::iter::once(read).chain(notes).collect::<Vec<_>>().join("; ");
     let mut preset = model.preset.clone();
     match put(&mut preset, "gap.file", Value::Profile(rows)) {

@@ -10,6 +10,7 @@ use crate::tui::app::App;
 use pulloff_engine::case::critical_force;
 use pulloff_engine::gap::wave_index;
 use pulloff_engine::report::number::{fixed, in_column, loss, with_unit};
+use pulloff_engine::text::counted;
 use pulloff_engine::units::Quantity;
 use ratatui::Frame;
 use ratatui::layout::Rect;
@@ -24,7 +25,7 @@ pub fn draw(frame: &mut Frame<'_>, area: Rect, app: &App, selected: bool) {
     let path = model.history.path();
     let jumps = path.iter().filter(|(_, node)| matches!(node.kind, NodeKind::Jump(_))).count();
     let said = if selected { "; Enter goes there" } else { "" };
-    let title = format!("walk: {} states, jumps {jumps}{said}", path.len());
+    let title = format!("walk: {}, jumps {jumps}{said}", counted(path.len(), "state"));
     let block = panel(theme, &title, selected);
     let inner = block.inner(area);
     frame.render_widget(block, area);

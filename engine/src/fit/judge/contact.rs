@@ -17,6 +17,7 @@ use super::super::verdict::Reason;
 use super::{Evidence, ROUNDING, runs};
 use crate::elementary::{hypot, ln};
 use crate::measured::{Abscissa, Instrument, Segment};
+use crate::text::counted;
 use crate::units::Quantity;
 use crate::units::number::{said, short};
 use nalgebra::DVector;
@@ -118,9 +119,9 @@ fn of_bins(evidence: Evidence, s: f64) -> Vec<Reason> {
             "bins",
             off(worst),
             format!(
-                "the curve misses the points: over {} rows of the {}, from {} = {} to {}, the mean residual \
+                "the curve misses the points: over {} of the {}, from {} = {} to {}, the mean residual \
                  is {} standard errors",
-                worst.count,
+                counted(worst.count, "row"),
                 worst.segment.name(),
                 if problem.abscissa == Abscissa::Radius { "s" } else { "x" },
                 shown(worst.x[0]),

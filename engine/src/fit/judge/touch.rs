@@ -11,6 +11,7 @@ use super::{Evidence, ROUNDING};
 use crate::elementary::hypot;
 use crate::measured::branches::median;
 use crate::measured::{Abscissa, Segment};
+use crate::text::counted;
 use crate::units::Quantity;
 use crate::units::number::{said, short};
 
@@ -74,9 +75,9 @@ pub(super) fn of_late(evidence: Evidence) -> Option<Reason> {
     let most = late.iter().copied().fold(0.0, f64::max);
     (late.len() > FEWEST).then(|| {
         let sentence = format!(
-            "on the approach the bodies are apart where the model has them in contact: {} rows, up to {} beyond its \
+            "on the approach the bodies are apart where the model has them in contact: {}, up to {} beyond its \
              first contact. --segment retraction leaves the approach out",
-            late.len(),
+            counted(late.len(), "row"),
             said(&problem.preset.units, Quantity::Length, most)
         );
         Reason::new("late", most, sentence)

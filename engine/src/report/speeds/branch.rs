@@ -38,6 +38,8 @@ pub(super) struct BranchReading {
     segment: Segment,
     /// How many of them could be in another contact.
     pub(super) ambiguous: usize,
+    /// How many are left out, as the contact among their neighbours is not one of theirs.
+    pub(super) hidden: usize,
     /// How often the radius jumps against the direction of the branch.
     pub(super) contrary: usize,
 }
@@ -49,7 +51,8 @@ impl BranchReading {
         points.sort_by_key(|point| point.at);
         if reading.pair != MeasuredPair::ForceApproach {
             let found = points.into_iter().filter_map(|point| Some((point, reading.released(&point)?)));
-            return Self { found: found.collect(), segment: branch.segment, ambiguous: 0, contrary: 0 };
+            let found = found.collect();
+            return Self { found, segment: branch.segment, ambiguous: 0, hidden: 0, contrary: 0 };
         }
         let mut rows: Vec<(MeasuredPoint, Vec<Released>)> =
             points.into_iter().map(|point| (point, reading.all_released(&point))).collect();
@@ -66,14 +69,20 @@ impl BranchReading {
         let all: Vec<Vec<PossibleContact>> = rows.iter().map(candidates).collect();
         let taken = steadiest(&all);
         // Where another contact could be, only the neighbours tell.
-        let is_open = |(of_row, taken): &(&Vec<PossibleContact>, &usize)| {
-            of_row.iter().enumerate().any(|(at, candidate)| at != **taken && candidate.holds)
+        let is_open = |(row, taken): &&(usize, usize)| {
+            all[*row].iter().enumerate().any(|(at, candidate)| at != *taken && candidate.holds)
         };
-        let ambiguous = all.iter().zip(&taken).filter(is_open).count();
-        let contrary = contrary(&all, &taken, branch.segment);
-        let found =
-            rows.iter().zip(taken).map(|((point, released), taken)| (*point, released[taken])).collect();
-        Self { found, segment: branch.segment, ambiguous, contrary }
+        let released = |(row, taken): &(usize, usize)| {
+            let (point, released) = &rows[*row];
+            (*point, released[*taken])
+        };
+        Self {
+            found: taken.iter().map(released).collect(),
+            segment: branch.segment,
+            ambiguous: taken.iter().filter(is_open).count(),
+            hidden: rows.len() - taken.len(),
+            contrary: contrary(&all, &taken, branch.segment),
+        }
     }
 
     /// The rows with their speeds, and the noise of their contact radii.
@@ -124,11 +133,16 @@ fn alone(of_row: &[PossibleContact], at: usize) -> f64 {
     others.map(|(_, other)| (other.radius - of_row[at].radius).abs()).fold(f64::INFINITY, f64::min)
 }
 
+/// The least distance between two contacts of a row; infinite where no row has several.
+fn least_distance(rows: &[Vec<PossibleContact>]) -> f64 {
+    rows.iter().map(|of_row| alone(of_row, 0)).fold(f64::INFINITY, f64::min)
+}
+
 /// How often the radius jumps outward on a retraction, or inward on an approach, by at least half the least distance
 /// between two contacts of a row: an edge does not, so noise has taken the contact of some rows away.
-fn contrary(rows: &[Vec<PossibleContact>], taken: &[usize], segment: Segment) -> usize {
-    let least = rows.iter().map(|of_row| alone(of_row, 0)).fold(f64::INFINITY, f64::min);
-    let found: Vec<&PossibleContact> = rows.iter().zip(taken).map(|(of_row, at)| &of_row[*at]).collect();
+fn contrary(rows: &[Vec<PossibleContact>], taken: &[(usize, usize)], segment: Segment) -> usize {
+    let least = least_distance(rows);
+    let found: Vec<&PossibleContact> = taken.iter().map(|(row, at)| &rows[*row][*at]).collect();
     let jumps = |pair: &&[&PossibleContact]| {
         let outward = pair[1].radius - pair[0].radius;
         let contrary = if segment == Segment::Retraction { outward } else { -outward };
@@ -139,41 +153,48 @@ fn contrary(rows: &[Vec<PossibleContact>], taken: &[usize], segment: Segment) ->
     found.windows(2).filter(jumps).count()
 }
 
-/// Of the candidates of each row, by their radii, the number of the one with which the radius jumps least over all rows; of
-/// equals the largest.
+/// The numbers of rows, and for each that of the candidate with which the radius jumps least over all rows; of equals the
+/// largest.
 ///
 /// A radius does not jump by less than half its distance from the others of both rows, or than its noise: a sum of all
 /// steps would only find the one that depends least on the noise. One that overlaps in all rows where another does not costs a
-/// jump of its own size: a state that cannot last may still be passed through.
-fn steadiest(rows: &[Vec<PossibleContact>]) -> Vec<usize> {
-    // The least way of the jumps up to each candidate of a row, and the candidate of the previous row that it comes from.
-    let mut ways: Vec<Vec<(f64, usize)>> = Vec::new();
+/// jump of its own size: a state that cannot last may still be passed through. A row is left out where that is cheaper than
+/// a jump away and back: noise has taken its contact.
+fn steadiest(rows: &[Vec<PossibleContact>]) -> Vec<(usize, usize)> {
+    /// The most neighbouring rows that are left out; half of all have lost their contact where noise is largest.
+    const MOST: usize = 20;
+    // To leave all rows out would cost one jump. One that stays is not avoided by that at any price.
+    let price = least_distance(rows) / rows.len() as f64;
+    // The least way of the jumps up to each candidate of a row, and the row and its candidate that it comes from.
+    let mut ways: Vec<Vec<(f64, Option<(usize, usize)>)>> = Vec::new();
     for (i, of_row) in rows.iter().enumerate() {
         let any_holds = of_row.iter().any(|candidate| candidate.holds);
         let way = |to: usize| {
-            let previous = i.checked_sub(1).map_or(&[][..], |i| &rows[i]);
-            let jump = |from: usize| {
-                let [a, b] = [&previous[from], &of_row[to]];
+            let b = &of_row[to];
+            let from = |row: usize, at: usize| {
+                let a = &rows[row][at];
                 let step = (b.radius - a.radius).abs();
-                let is_near = step < 0.5 * alone(previous, from).min(alone(of_row, to));
-                if is_near { 0.0 } else { (step - noise_of(a, b)).max(0.0) }
+                let is_near = step < 0.5 * alone(&rows[row], at).min(alone(of_row, to));
+                let jump = if is_near { 0.0 } else { (step - noise_of(a, b)).max(0.0) };
+                let skipped = i - row - 1;
+                let left_out = if skipped == 0 { 0.0 } else { price * skipped as f64 };
+                (ways[row][at].0 + jump + left_out, Some((row, at)))
             };
-            let overlaps = any_holds && !of_row[to].holds;
-            let cost = if overlaps { of_row[to].radius / rows.len() as f64 } else { 0.0 };
-            let ways = (0..previous.len()).rev().map(|from| (ways[i - 1][from].0 + jump(from), from));
-            let (way, from) = ways.min_by(|a, b| a.0.total_cmp(&b.0)).unwrap_or((0.0, 0));
-            (way + cost, from)
+            let earlier = (i.saturating_sub(MOST + 1)..i).rev();
+            let ways = earlier.flat_map(|row| (0..rows[row].len()).rev().map(move |at| (row, at)));
+            let least = ways.map(|(row, at)| from(row, at)).min_by(|a, b| a.0.total_cmp(&b.0));
+            let (way, from) = least.unwrap_or((0.0, None));
+            let overlaps = any_holds && !b.holds;
+            (way + if overlaps { b.radius / rows.len() as f64 } else { 0.0 }, from)
         };
-        ways.push((0..of_row.len()).map(way).collect());
+        let ways_of_row = (0..of_row.len()).map(way).collect();
+        ways.push(ways_of_row);
     }
-    let least =
-        |ways: &Vec<(f64, usize)>| (0..ways.len()).rev().min_by(|a, b| ways[*a].0.total_cmp(&ways[*b].0));
-    let mut at = ways.last().and_then(least).unwrap_or(0);
-    let mut taken = Vec::new();
-    for ways in ways.iter().rev() {
-        taken.push(at);
-        at = ways[at].1;
-    }
+    let least = |ways: &Vec<(f64, Option<(usize, usize)>)>| {
+        (0..ways.len()).rev().min_by(|a, b| ways[*a].0.total_cmp(&ways[*b].0))
+    };
+    let last = ways.last().and_then(least).map(|at| (ways.len() - 1, at));
+    let mut taken: Vec<_> = std::iter::successors(last, |(row, at)| ways[*row][*at].1).collect();
     taken.reverse();
     taken
 }
@@ -183,9 +204,32 @@ mod tests {
     use super::{PossibleContact, Segment, contrary, steadiest};
 
     /// Rows of candidates with these radii, all admissible and with the noise 0.01.
-    fn taken(rows: &[Vec<f64>]) -> Vec<usize> {
+    fn all_taken(rows: &[Vec<f64>]) -> Vec<(usize, usize)> {
         let candidate = |radius: &f64| PossibleContact { radius: *radius, spread: 0.01, holds: true };
         steadiest(&rows.iter().map(|row| row.iter().map(candidate).collect()).collect::<Vec<_>>())
+    }
+
+    /// As [`all_taken`], where no row is left out.
+    fn taken(rows: &[Vec<f64>]) -> Vec<usize> {
+        let found = all_taken(rows);
+        assert!(found.iter().map(|(row, _)| *row).eq(0..rows.len()));
+        found.into_iter().map(|(_, at)| at).collect()
+    }
+
+    #[test]
+    fn a_row_whose_contact_noise_takes_away_is_left_out() {
+        let row = |i: usize| match i {
+            0 | 99 => vec![2.0],
+            40..45 | 60 => vec![1.0],
+            _ => vec![1.0, 2.0],
+        };
+        let rows: Vec<_> = (0..100).map(row).collect();
+        let left: Vec<usize> = (0..100).filter(|i| !(40..45).contains(i) && *i != 60).collect();
+        assert_eq!(all_taken(&rows), left.into_iter().map(|i| (i, rows[i].len() - 1)).collect::<Vec<_>>());
+        // A jump that stays is one, even if soon another one follows, and at the last row.
+        let wide = |i: usize| 5.0 - [2, 4, 99].iter().filter(|from| i >= **from).count() as f64;
+        let snaps = |i: usize| if i == 0 { vec![5.0] } else { vec![wide(i), 0.5] };
+        assert_eq!(taken(&(0..100).map(snaps).collect::<Vec<_>>()), [0; 100]);
     }
 
     #[test]
@@ -216,15 +260,16 @@ mod tests {
         let rows = |radii: &[&[f64]]| -> Vec<Vec<PossibleContact>> {
             radii.iter().map(|row| row.iter().copied().map(one).collect()).collect()
         };
+        let at = |taken: &[usize]| taken.iter().copied().enumerate().collect::<Vec<_>>();
         // The third row has lost the contact at 2.
         let all = rows(&[&[1.0, 2.0], &[1.0, 2.0], &[1.0], &[1.0, 2.0], &[1.9]]);
-        assert_eq!(contrary(&all, &[1, 1, 0, 1, 0], Segment::Retraction), 1);
+        assert_eq!(contrary(&all, &at(&[1, 1, 0, 1, 0]), Segment::Retraction), 1);
         // A snap inward, and the same on an approach.
-        assert_eq!(contrary(&all, &[1, 0, 0, 0, 0], Segment::Retraction), 1);
-        assert_eq!(contrary(&all[..4], &[1, 0, 0, 0], Segment::Retraction), 0);
-        assert_eq!(contrary(&all[..4], &[1, 0, 0, 0], Segment::Approach), 1);
+        assert_eq!(contrary(&all, &at(&[1, 0, 0, 0, 0]), Segment::Retraction), 1);
+        assert_eq!(contrary(&all[..4], &at(&[1, 0, 0, 0]), Segment::Retraction), 0);
+        assert_eq!(contrary(&all[..4], &at(&[1, 0, 0, 0]), Segment::Approach), 1);
         // With one contact at every row there is nothing to mistake.
-        assert_eq!(contrary(&rows(&[&[2.0], &[1.0], &[2.0]]), &[0, 0, 0], Segment::Retraction), 0);
+        assert_eq!(contrary(&rows(&[&[2.0], &[1.0], &[2.0]]), &at(&[0, 0, 0]), Segment::Retraction), 0);
     }
 
     #[test]
@@ -234,7 +279,7 @@ mod tests {
                 let one = |radius, holds| PossibleContact { radius, spread: 0.01, holds };
                 if i < overlapping { vec![one(1.0, true), one(2.0, false)] } else { vec![one(2.0, true)] }
             };
-            steadiest(&(0..100).map(row).collect::<Vec<_>>())[0]
+            steadiest(&(0..100).map(row).collect::<Vec<_>>())[0].1
         };
         assert_eq!([with(10), with(90)], [1, 0]);
     }
