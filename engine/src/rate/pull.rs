@@ -63,7 +63,7 @@ pub struct Pull {
     pub start: Moment,
     /// The moment at which the edge first opens; `None` where it never does.
     pub pinned_until: Option<Moment>,
-    /// The least force on the way.
+    /// The least force on the way. Under a dead load it is often that of the last contact, whose approach is −∞.
     pub peak: Moment,
     /// The least forces before which the force falls, and after which it rises, by more than the rise asked for.
     pub tension_peaks: Vec<Moment>,
@@ -337,6 +337,8 @@ impl Going<'_> {
             let apart = Moment {
                 time,
                 contact_radius: 0.0,
+                // A dead load falls for ever.
+                approach: if control == Control::Force { f64::NEG_INFINITY } else { before.approach },
                 force: if control == Control::Force { before.force } else { 0.0 },
                 dissipated: dissipated.unwrap_or(before.dissipated),
                 ..before
@@ -350,6 +352,8 @@ impl Going<'_> {
         let least = |a: Moment, b: &Moment| if b.force < a.force { *b } else { a };
         let peak = self.record.moments.iter().fold(start, least);
         let peak = self.record.least.iter().map(|least| &least.at).fold(peak, least);
+        // A dead load is largest where the bodies come apart, not where the integrator stopped short of it.
+        let peak = last_contact.filter(|apart| apart.force <= peak.force).unwrap_or(peak);
         Pull {
             start,
             pinned_until: self.pinned_until,

@@ -59,8 +59,8 @@ pub struct MomentReport {
     pub time: f64,
     /// s.
     pub contact_radius: f64,
-    /// δ.
-    pub approach: f64,
+    /// δ; null at the last contact under a dead load, which falls without end.
+    pub approach: Option<f64>,
     /// P.
     pub force: f64,
 }
@@ -220,20 +220,19 @@ impl Factors {
         MomentReport {
             time: moment.time * self.time(),
             contact_radius: moment.contact_radius * self.length,
-            approach: moment.approach * self.length,
+            approach: Some(moment.approach * self.length).filter(|approach| approach.is_finite()),
             force: moment.force * self.force,
         }
     }
 
     fn row(&self, rate: Option<f64>, moment: &Moment) -> MomentRow {
-        let MomentReport { time, contact_radius, approach, force } = self.moment(moment);
         MomentRow {
             rate,
-            time,
+            time: moment.time * self.time(),
             control: moment.control * self.control,
-            contact_radius,
-            approach,
-            force,
+            contact_radius: moment.contact_radius * self.length,
+            approach: moment.approach * self.length,
+            force: moment.force * self.force,
             speed: moment.speed * self.speed,
             energy_release_rate: moment.energy_release_rate * self.adhesion,
             dissipated: moment.dissipated * self.energy,
@@ -401,11 +400,12 @@ impl PullReport {
     fn one(&self, run: &RunReport) -> String {
         let units = &self.head.units.shown;
         let at = |moment: &MomentReport| {
+            let approach = |approach| format!("  delta {}", shown(units, Quantity::Length, approach));
             format!(
-                "t {}  contact {}  delta {}  P {}{}",
+                "t {}  contact {}{}  P {}{}",
                 shown(units, Quantity::Time, moment.time),
                 shown(units, Quantity::Length, moment.contact_radius),
-                shown(units, Quantity::Length, moment.approach),
+                moment.approach.map_or_else(String::new, approach),
                 shown(units, Quantity::Force, moment.force),
                 self.over_critical(moment.force),
             )
