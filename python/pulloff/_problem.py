@@ -433,7 +433,6 @@ class Problem:
         skip: int = 0,
         x_range: Optional[Range] = None,
         force_range: Optional[Range] = None,
-        separate: bool = False,
         model: Union[str, Sequence[str], None] = None,
         robust: bool = True,
         sigma_x: Optional[float] = None,
@@ -474,8 +473,6 @@ class Problem:
             The number of rows left out at the beginning.
         x_range, force_range : (from, to), optional
             Only rows in this range are used, with values as they are in the data; None leaves an end open.
-        separate : bool
-            Whether approach and retraction each have their own work of adhesion.
         model : {"short-range", "dugdale", "rate"} or a sequence of them, optional
             How the adhesion acts: only at the edge of the contact; within a range, whose ``material.cohesive_strength`` is then
             free too; or growing with the speed of the edge, with the keys of ``edge`` free. By default ``material.adhesion`` of
@@ -516,7 +513,6 @@ class Problem:
             "skip": skip_of(skip),
             "free": [free] if isinstance(free, str) else None if free is None else list(free),
             "uncertain": None if uncertain is None else ",".join(f"{key}={error}" for key, error in uncertain.items()),
-            "separate": separate,
             "models": [model] if isinstance(model, str) else list(model or ()),
             "robust": robust,
             "sigma": (sigma_x, sigma_force),

@@ -80,7 +80,6 @@ pub struct Wanted {
     skip: u32,
     free: Option<Vec<String>>,
     uncertain: Option<String>,
-    separate: bool,
     models: Vec<String>,
     robust: bool,
     sigma: [Option<f64>; 2],
@@ -105,7 +104,6 @@ impl Wanted {
         let own = || preset.data.free().map(str::to_owned).collect();
         Options {
             free: self.free.clone().unwrap_or_else(own),
-            separate: self.separate,
             robust: self.robust,
             asked,
             scan: self.scan,

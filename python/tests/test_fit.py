@@ -184,8 +184,7 @@ def test_sentences_name_the_arguments_of_python():
         (SPHERE, None, dict(free=FREE)),
         (SPHERE, points(), dict(free=["nothing"])),
         (zero, points(), dict(free=["gap.amplitude"])),
-        (SPHERE, points(), dict(free=["material.effective_modulus"], separate=True)),
-        (SPHERE, points(), dict(free=FREE, separate=True)),
+        (SPHERE, points(), dict(free=[*FREE, "material.closing_work_of_adhesion"])),
         (SPHERE, {"a": [1.0] * 9, "b": [2.0] * 9}, dict(free=FREE)),
         (SPHERE, points(), dict(free=FREE, columns="nothing")),
         (SPHERE, points(), dict(free=FREE, columns="x=7,force=2")),
@@ -194,7 +193,7 @@ def test_sentences_name_the_arguments_of_python():
             problem.fit(data, **arguments)
         said.append(str(caught.value))
     assert not any("--" in sentence for sentence in said), said
-    for sentence, word in zip(said, ["free=[", "data", "free key nothing", "replace", "separate", "separate", "columns"]):
+    for sentence, word in zip(said, ["free=[", "data", "free key nothing", "replace", "both an approach and a retraction", "columns"]):
         assert word in sentence, said
     assert "--" not in "".join(SPHERE.fit(points(), FREE, **SIGMA).warnings)
 

@@ -10,6 +10,7 @@ use crate::measured::asked::signs_text;
 use crate::measured::points::Turned;
 use crate::measured::{Asked, Branches, Points};
 use crate::preset::data::COLUMNS;
+use crate::preset::edge::CLOSING_ADHESION;
 use crate::preset::{OtherReading, Preset};
 use crate::progress::{Progress, ProgressPart};
 use crate::units::number::short;
@@ -114,7 +115,8 @@ pub fn fit(
     let mut found = directed(preset, points, options, progress)?;
     let Some(at) = found.reasons.iter().position(|reason| reason.kind == BRANCHES) else { return Ok(found) };
     // Whatever the model lacks, two works of adhesion describe it a little better: only a fit shows that they are it.
-    let apart = Options { separate: true, ..options.without_intervals() };
+    let mut apart = options.without_intervals();
+    apart.free.push(CLOSING_ADHESION.to_owned());
     if let Ok(apart) = directed(preset, points, &apart, &ProgressPart::new(progress, [1.0, 1.0])) {
         let mut reason = found.reasons.remove(at);
         let is_described = apart.verdict == Verdict::Describes;

@@ -37,8 +37,8 @@ impl FitProblem {
             Target::Baseline => held.instrument.baseline = in_points,
             Target::Tilt => held.instrument.tilt = in_points,
             Target::Key(key) => held.preset.set(&key, Value::Number(value)).ok()?,
-            // With one of two adhesions held, the other would become the adhesion of both.
-            Target::Adhesion(_) => return None,
+            Target::Adhesion(Segment::Approach) => held.closing = Some(value),
+            Target::Adhesion(_) => held.preset.material.work_of_adhesion = value,
         }
         Some(held)
     }

@@ -39,6 +39,7 @@ use crate::elementary::hypot;
 use crate::measured::converter::Clipped;
 use crate::measured::{Abscissa, Branches, SPARSE, is_hidden};
 use crate::preset::Preset;
+use crate::preset::edge::CLOSING_ADHESION;
 use crate::problem::Groups;
 use crate::problem::groups::LARGE_TABOR;
 use crate::units::number::{said, short, significant};
@@ -226,8 +227,9 @@ pub(super) fn doubts(
         let drawn = fitted.bootstrap.map_or(0.0, |found| found.half() / NORMAL);
         fitted.standard_error.map(|error| error.max(drawn))
     };
-    let adhesions: Vec<&Fitted> = fitted.iter().filter(|fitted| fitted.key.starts_with(ADHESION)).collect();
-    if let [approach, retraction] = adhesions[..]
+    let of_key = |key: &str| fitted.iter().find(|fitted| fitted.key == key);
+    let adhesions = [CLOSING_ADHESION, ADHESION].map(of_key);
+    if let [Some(approach), Some(retraction)] = adhesions
         && let [Some(a), Some(b)] = [approach, retraction].map(error)
         && (approach.value - retraction.value).abs()
             > f64::max(2.0 * hypot(a, b), DIFFERENT * retraction.value)
@@ -239,13 +241,13 @@ pub(super) fn doubts(
                  at most what an opening one costs"
             } else {
                 "the works of adhesion of approach and retraction differ by more than their errors: between \
-                 them the edge is pinned (material.closing_work_of_adhesion), or its speed matters, or the \
+                 them the edge is pinned, or its speed matters, or the \
                  bodies age"
             }
             .to_owned(),
         );
     }
-    for fitted in adhesions {
+    for fitted in adhesions.into_iter().flatten() {
         if let Some(error) = fitted.standard_error.filter(|error| fitted.value < FROM_NONE * error) {
             doubts.push(format!(
                 "{} is only {} standard errors above 0: the points hardly distinguish it from no adhesion",

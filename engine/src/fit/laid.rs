@@ -5,6 +5,8 @@ use super::uncertain::{uncertain, written};
 use crate::measured::{Instrument, Segment};
 use crate::preset::data::{BASELINE, OFFSET, TILT};
 use crate::preset::{Preset, Value, edge};
+use crate::units::Quantity;
+use crate::units::number::said;
 
 /// `preset` with the values of `found`; its path stays its own.
 pub(super) fn laid(
@@ -20,7 +22,7 @@ pub(super) fn laid(
         .priors
         .iter()
         .map(|prior| (&problem.parameters[prior.parameter], prior))
-        .filter(|(parameter, _)| known.iter().any(|known| known.target == parameter.target))
+        .filter(|(parameter, _)| known.iter().any(|known| known.target.key() == parameter.key()))
         .map(|(parameter, prior)| written(parameter, prior))
         .collect();
     laid.data.uncertain = known.join(",");
@@ -28,10 +30,20 @@ pub(super) fn laid(
     // A closing edge gains at most what an opening one costs, so the opening value must be set first.
     let is_closing = |of: &&FreeParameter| of.target == Target::Adhesion(Segment::Approach);
     let all = || problem.parameters.iter();
+    if let Some(before) = laid.edge.closing_work_of_adhesion.filter(|before| *before > opening) {
+        laid.edge.closing_work_of_adhesion = None;
+        if !all().any(|parameter| is_closing(&parameter)) {
+            notes.push(format!(
+                "{} = {} is above the work of adhesion that was found, and not in the fitted preset",
+                edge::CLOSING_ADHESION,
+                said(&preset.units, Quantity::EnergyPerArea, before)
+            ));
+        }
+    }
     for parameter in all().filter(|of| !is_closing(of)).chain(all().filter(is_closing)) {
         let (key, value) = match &parameter.target {
             Target::Key(key) => (key.as_str(), found.get(key)),
-            Target::Adhesion(Segment::Retraction) => (ADHESION, found.get(ADHESION)),
+            Target::Adhesion(Segment::Retraction | Segment::Other) => (ADHESION, found.get(ADHESION)),
             Target::Adhesion(_) => {
                 (edge::CLOSING_ADHESION, closing.filter(|closing| *closing <= opening).map(Value::from))
             }

@@ -94,6 +94,8 @@ pub use verdict::{Reason, Verdict};
 #[cfg(test)]
 mod tests;
 #[cfg(test)]
+mod tests_of_dead_bands;
+#[cfg(test)]
 mod tests_of_given;
 #[cfg(test)]
 mod tests_of_records;

@@ -13,12 +13,9 @@ use thiserror::Error;
 
 /// What is asked of a fit.
 #[derive(Debug, Clone, PartialEq)]
-#[expect(clippy::struct_excessive_bools, reason = "each is a switch of its own")]
 pub struct Options {
     /// The free keys, dotted or by their labels.
     pub free: Vec<String>,
-    /// Whether each branch has a work of adhesion of its own.
-    pub separate: bool,
     /// Whether outliers count linearly, or squared like all others.
     pub robust: bool,
     /// What is used of the points.
@@ -37,7 +34,6 @@ impl Default for Options {
     fn default() -> Self {
         Self {
             free: Vec::new(),
-            separate: false,
             robust: true,
             asked: Asked::default(),
             is_rate_said: false,
@@ -119,8 +115,8 @@ pub enum FitError {
     },
     /// Loading with rings of contact; in words, when they begin.
     #[error(
-        "loading on this gap forms rings of contact, which are not fitted: {0}. Use the retraction, without \
-         --separate"
+        "loading on this gap forms rings of contact, which are not fitted: {0}. Use the retraction, without {key}",
+        key = edge::CLOSING_ADHESION
     )]
     Loading(String),
     /// Two directions of the columns that fit alike.
@@ -173,6 +169,7 @@ pub fn target(preset: &Preset, abscissa: Abscissa, name: &str) -> Result<Target,
     let others = [
         "material.effective_modulus",
         ADHESION,
+        edge::CLOSING_ADHESION,
         "path.control.stiffness",
         edge::REFERENCE_SPEED,
         edge::EXPONENT,
@@ -191,7 +188,9 @@ pub fn target(preset: &Preset, abscissa: Abscissa, name: &str) -> Result<Target,
                 .to_owned(),
         ));
     }
-    match preset.get(&row.key) {
+    // What a closing edge gains starts from what an opening one costs.
+    let given = if row.key == edge::CLOSING_ADHESION { preset.get(ADHESION) } else { None };
+    match preset.get(&row.key).or(given) {
         Some(Value::Number(value)) if value > 0.0 => Ok(Target::Key(row.key.to_string())),
         Some(Value::Number(value)) if value < 0.0 => {
             Err(refused("starts below 0: only positive values can be fitted".to_owned()))
@@ -208,9 +207,6 @@ pub fn target(preset: &Preset, abscissa: Abscissa, name: &str) -> Result<Target,
 
 /// A key as it appears in a sentence: E*, γ, R.
 pub fn letter(preset: &Preset, key: &str) -> String {
-    if let Some(branch) = key.strip_prefix(ADHESION) {
-        return format!("γ{}", branch.replace('.', " of "));
-    }
     match key {
         OFFSET => "δ₀".to_owned(),
         BASELINE => "P₀".to_owned(),

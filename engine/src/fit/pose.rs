@@ -3,6 +3,7 @@
 use super::options::{FitError, Options, target};
 use super::prior::Prior;
 use super::problem::{ADHESION, Datum, FitProblem, FreeParameter, START, Target};
+use super::pulled::is_pulled;
 use super::reach::Reach;
 use super::track::begins;
 use super::uncertain::{Uncertain, uncertain};
@@ -11,6 +12,7 @@ use crate::gap::Gap;
 use crate::measured::branches::{MeasuredPoint, median};
 use crate::measured::{Abscissa, Branches, Instrument, Segment};
 use crate::preset::data::DataSpec;
+use crate::preset::edge::CLOSING_ADHESION;
 use crate::preset::{BasisSpec, Preset, Value};
 use crate::problem::{Control, Start};
 use crate::units::Quantity;
@@ -48,14 +50,17 @@ pub fn posed(
     }
     let mut data = data(branches);
     let offset = preset.data.instrument(branches).offset;
+    let closing = closing(preset, branches, options)?;
     let has_waves = preset.gap.feature_length().is_some();
-    let mut targets = targets(preset, branches, options)?;
-    if let Some(start) = started(&mut bare, (branches, options), (&mut data, offset), &targets, notes)? {
+    let mut targets = targets(preset, branches, (options, closing))?;
+    if let Some(start) =
+        started(&mut bare, (branches, options, closing), (&mut data, offset), &targets, notes)?
+    {
         bare.path.start = start;
         targets.push(Target::Key(START.to_owned()));
     }
     let loops = has_waves && data.iter().any(|datum| datum.segment == Segment::Approach);
-    let known = known(preset, branches, options)?;
+    let known = known(preset, branches, (options, closing))?;
     let is_known = known.iter().any(|known| known.target == Target::Baseline);
     let instrument = instrument(preset, branches, options, (&mut targets, is_known), notes);
     targets.extend(
@@ -68,6 +73,10 @@ pub fn posed(
     );
     let parameters = targets.into_iter().map(|target| parameter(&bare, branches, &instrument, target));
     let parameters: Vec<FreeParameter> = parameters.collect();
+    if !is_pulled(&bare) {
+        // It is that of the approach now, and the values of a fit need not be in order with it.
+        bare.edge.closing_work_of_adhesion = None;
+    }
     let attached = data.iter().filter(|datum| !datum.free).count();
     // What is known before takes the place of points.
     let needed = PER_PARAMETER * (parameters.len() - known.len()).max(2);
@@ -95,6 +104,7 @@ pub fn posed(
         step: branches.noise.step,
         space,
         reach,
+        closing: if let Closing::Given(gamma) = closing { Some(gamma) } else { None },
         loops,
         counts: None,
     })
@@ -104,7 +114,7 @@ pub fn posed(
 /// any other, whose path depends on no start.
 fn started(
     bare: &mut Preset,
-    (branches, options): (&Branches, &Options),
+    (branches, options, closing): (&Branches, &Options, Closing),
     (data, offset): (&mut Vec<Datum>, f64),
     targets: &[Target],
     notes: &mut Vec<String>,
@@ -116,7 +126,7 @@ fn started(
     if options.is_rate_said {
         notes.push("--rate plays no part, as no key of edge is fitted".to_owned());
     }
-    if !options.separate {
+    if closing == Closing::Same {
         return Ok(None);
     }
     let retraction = branches.list.iter().filter(|branch| branch.segment == Segment::Retraction);
@@ -267,43 +277,85 @@ fn data(branches: &Branches) -> Vec<Datum> {
     data
 }
 
+/// The work of adhesion that a closing edge gains.
+#[derive(Debug, Clone, Copy, PartialEq)]
+enum Closing {
+    /// That of an opening edge.
+    Same,
+    /// One that is given.
+    Given(f64),
+    /// One that is fitted.
+    Free,
+}
+
+impl Closing {
+    /// What the work of adhesion belongs to, if `target` is one.
+    fn of(self, target: Target) -> Target {
+        match target {
+            Target::Key(key) if key == CLOSING_ADHESION => Target::Adhesion(Segment::Approach),
+            Target::Key(key) if key == ADHESION && self != Self::Same => {
+                Target::Adhesion(Segment::Retraction)
+            }
+            target => target,
+        }
+    }
+}
+
+/// Whether approach and retraction have works of adhesion of their own.
+///
+/// # Errors
+/// [`FitError::Key`] where that of the approach is asked for and nothing shows it.
+fn closing(preset: &Preset, branches: &Branches, options: &Options) -> Result<Closing, FitError> {
+    let has = |segment| branches.list.iter().any(|branch| branch.segment == segment);
+    let is_loop = has(Segment::Approach) && has(Segment::Retraction);
+    let named = options.free.iter().map(|name| target(preset, branches.abscissa, name));
+    let mut targets = named.collect::<Result<Vec<_>, _>>()?;
+    if !options.free.is_empty() {
+        let known = uncertain(preset, branches.abscissa, &preset.data.uncertain)?;
+        targets.extend(known.into_iter().map(|known| known.target));
+    }
+    let has_law = targets.iter().any(|target| target.key().starts_with("edge."));
+    if !targets.contains(&Target::Key(CLOSING_ADHESION.to_owned())) {
+        let given = preset.edge.closing_work_of_adhesion.filter(|_| is_loop && !has_law);
+        return Ok(given.map_or(Closing::Same, Closing::Given));
+    }
+    let refused = |why: &str| Err(FitError::Key { key: CLOSING_ADHESION.to_owned(), why: why.to_owned() });
+    if has_law {
+        return refused("plays no part with keys of edge, which are fitted to the retraction alone");
+    }
+    if !is_loop {
+        return refused("needs both an approach and a retraction");
+    }
+    Ok(Closing::Free)
+}
+
 /// What is free, according to what is asked for.
-fn targets(preset: &Preset, branches: &Branches, options: &Options) -> Result<Vec<Target>, FitError> {
+fn targets(
+    preset: &Preset,
+    branches: &Branches,
+    (options, closing): (&Options, Closing),
+) -> Result<Vec<Target>, FitError> {
     let mut targets: Vec<Target> = Vec::new();
     for name in &options.free {
-        let target = target(preset, branches.abscissa, name)?;
+        let target = closing.of(target(preset, branches.abscissa, name)?);
         if !targets.contains(&target) {
             targets.push(target);
         }
     }
-    if !options.separate {
-        return Ok(targets);
-    }
-    let refused = |why: &str| Err(FitError::Key { key: ADHESION.to_owned(), why: why.to_owned() });
-    let Some(at) = targets.iter().position(|target| *target == Target::Key(ADHESION.to_owned())) else {
-        return refused("--separate splits it, so it must be free");
-    };
-    let has = |segment| branches.list.iter().any(|branch| branch.segment == segment);
-    if !(has(Segment::Approach) && has(Segment::Retraction)) {
-        return refused("--separate needs both an approach and a retraction to fit");
-    }
-    targets.splice(at..=at, [Target::Adhesion(Segment::Approach), Target::Adhesion(Segment::Retraction)]);
     Ok(targets)
 }
 
 /// What is known of values before, where a fit is asked for.
-fn known(preset: &Preset, branches: &Branches, options: &Options) -> Result<Vec<Uncertain>, FitError> {
+fn known(
+    preset: &Preset,
+    branches: &Branches,
+    (options, closing): (&Options, Closing),
+) -> Result<Vec<Uncertain>, FitError> {
     if options.free.is_empty() {
         return Ok(Vec::new());
     }
     let known = uncertain(preset, branches.abscissa, &preset.data.uncertain)?;
-    let splits =
-        options.separate && known.iter().any(|known| known.target == Target::Key(ADHESION.to_owned()));
-    if splits {
-        let why = "--separate makes two values of it, and neither is given".to_owned();
-        return Err(FitError::Uncertain { given: ADHESION.to_owned(), why });
-    }
-    Ok(known)
+    Ok(known.into_iter().map(|known| known.with_target(|target| closing.of(target))).collect())
 }
 
 /// Where the values between model and instrument start. A baseline that the points show is free too. So is one
@@ -378,7 +430,10 @@ fn parameter(preset: &Preset, branches: &Branches, instrument: &Instrument, targ
     let in_file = instrument.turned(branches.turned);
     let (start, scale) = match &target {
         Target::Key(key) => (value(key), None),
-        Target::Adhesion(_) => (value(ADHESION), None),
+        Target::Adhesion(segment) => {
+            let given = preset.edge.closing_work_of_adhesion.filter(|_| *segment == Segment::Approach);
+            (given.unwrap_or_else(|| value(ADHESION)), None)
+        }
         Target::Offset => (in_file.offset, Some(x)),
         Target::Baseline => (in_file.baseline, Some(force)),
         Target::Tilt => (in_file.tilt, Some(force / x)),

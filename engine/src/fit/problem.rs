@@ -24,7 +24,7 @@ use std::thread::available_parallelism;
 pub enum Target {
     /// A key of the preset.
     Key(String),
-    /// The work of adhesion of one branch.
+    /// The work of adhesion of one branch: what a closing edge gains, or an opening one costs.
     Adhesion(Segment),
     /// δ₀: x = model + δ₀.
     Offset,
@@ -46,11 +46,12 @@ impl Target {
         }
     }
 
-    /// Its dotted key; for the adhesion of a branch, followed by the branch.
+    /// Its dotted key.
     pub fn key(&self) -> String {
         match self {
             Self::Key(key) => key.clone(),
-            Self::Adhesion(segment) => format!("{ADHESION}.{}", segment.name()),
+            Self::Adhesion(Segment::Approach) => edge::CLOSING_ADHESION.to_owned(),
+            Self::Adhesion(_) => ADHESION.to_owned(),
             Self::Offset => OFFSET.to_owned(),
             Self::Baseline => BASELINE.to_owned(),
             Self::Tilt => TILT.to_owned(),
@@ -97,7 +98,7 @@ impl FreeParameter {
         [value, prior.sigma * self.slope(value).abs()]
     }
 
-    /// Its dotted key; for the adhesion of a branch, followed by the branch.
+    /// Its dotted key.
     pub fn key(&self) -> String {
         self.target.key()
     }
@@ -147,6 +148,8 @@ pub struct FitProblem {
     pub space: bool,
     /// What the paths must reach.
     pub reach: Reach,
+    /// The work of adhesion of the approach where it is given and not that of the retraction.
+    pub closing: Option<f64>,
     /// Whether approach and retraction go different ways: there are waves, and points of an approach.
     pub loops: bool,
     /// How often each residual counts; without counts, each counts once.
@@ -199,6 +202,9 @@ impl FitProblem {
     /// The preset at `u`, of one branch.
     pub fn preset_at(&self, u: &[f64], segment: Segment) -> Option<Preset> {
         let mut preset = self.preset.clone();
+        if let Some(closing) = self.closing.filter(|_| segment == Segment::Approach) {
+            preset.material.work_of_adhesion = closing;
+        }
         for (parameter, u) in self.parameters.iter().zip(u) {
             let key = match &parameter.target {
                 Target::Key(key) => key.as_str(),
@@ -290,7 +296,7 @@ impl FitProblem {
 
     /// Whether they have works of adhesion of their own.
     pub(super) fn splits(&self) -> bool {
-        self.parameters.iter().any(|p| matches!(p.target, Target::Adhesion(_)))
+        self.closing.is_some() || self.parameters.iter().any(|p| matches!(p.target, Target::Adhesion(_)))
     }
 
     /// The paths at `u`.

@@ -3,7 +3,6 @@
 use super::least_squares::Ending;
 use super::mover::Mover;
 use super::path::FitPath;
-use super::problem::START;
 use super::reach::Reach;
 use super::way::Way;
 use super::*;
@@ -56,13 +55,13 @@ pub(super) struct Body<'a> {
 }
 
 impl Body<'_> {
-    fn way(&self, s: f64) -> f64 {
+    pub(super) fn way(&self, s: f64) -> f64 {
         let (delta, force) = (self.state)(s);
         delta + self.compliance * force
     }
 
     /// The radius at which the way is smallest: the pull-off.
-    fn fold(&self) -> f64 {
+    pub(super) fn fold(&self) -> f64 {
         let (mut lo, mut hi) = (1e-4 * self.most, self.most);
         for _ in 0..200 {
             let [a, b] = [lo + (hi - lo) / 3.0, hi - (hi - lo) / 3.0];
@@ -72,7 +71,7 @@ impl Body<'_> {
     }
 
     /// The stable radius of a way.
-    fn radius(&self, way: f64) -> Option<f64> {
+    pub(super) fn radius(&self, way: f64) -> Option<f64> {
         let fold = self.fold();
         if way < self.way(fold) {
             return None;
@@ -269,7 +268,7 @@ fn what_cannot_be_told_apart_is_refused_and_named() {
 }
 
 /// The sphere of the trials, with noise in P of 0.5 % of its range.
-fn noisy(seed: u64, outliers: bool) -> Points {
+pub(super) fn noisy(seed: u64, outliers: bool) -> Points {
     let body = Body { state: &sphere(1.0, 0.02, 1.0), compliance: 0.0, most: 1.1 };
     let mut points = body.samples(600);
     let range = 1.05;
@@ -580,58 +579,6 @@ fn order_and_units_change_nothing() {
     for (j, factor) in [(0, 1.0), (1, 1e-3)] {
         assert!((fit.parameters[j].value / plain.parameters[j].value / factor - 1.0).abs() < 1e-9);
     }
-}
-
-#[test]
-fn an_edge_is_pinned_between_two_works_of_adhesion() {
-    const MOST: f64 = 1.6;
-    let [advancing, receding] = [0.01, 0.03].map(|w| sphere(1.3, w, 2.0));
-    let mut points = Body { state: &advancing, compliance: 0.0, most: MOST }.samples(600);
-    let down = Body { state: &receding, compliance: 0.0, most: MOST };
-    let ((top, pressed), (turned, _)) = (advancing(MOST), receding(MOST));
-    let last = down.way(down.fold());
-    // Back from the turn along dP/dδ = 2E*s at its radius, then with the larger work.
-    for i in 0..300 {
-        let x = top + (i as f64 + 0.5) / 300.0 * 1.4 * (last - top);
-        let force = if x > turned {
-            pressed + 2.0 * 1.3 * MOST * (x - top)
-        } else {
-            down.radius(x).map_or(0.0, |s| receding(s).1)
-        };
-        (points.x[300 + i], points.force[300 + i]) = (x, force);
-    }
-    let mut normal = Normal::new(4);
-    points.force.iter_mut().for_each(|p| *p += 5e-4 * normal.next());
-    let free = vec![E.to_owned(), W.to_owned()];
-    let options = Options { free, separate: true, ..Options::default() };
-    let fit = fit(&preset(SPHERE, 1.5, 0.007, ""), &points, &options, &Unwatched).unwrap();
-    let keys: Vec<&str> = fit.parameters.iter().map(|fitted| fitted.key.as_str()).collect();
-    assert_eq!(keys[1..4], [&*format!("{W}.approach"), &format!("{W}.retraction"), START]);
-    close(&fit, &[1.3, 0.01, 0.03, MOST], 0.02);
-    assert_eq!(fit.verdict, Verdict::Describes, "{:?}", fit.reasons);
-    assert!(fit.warnings.iter().any(|warning| warning.contains("the edge is pinned")), "{:?}", fit.warnings);
-    // The fitted preset has the dead band.
-    let closing = fit.preset.edge.closing_work_of_adhesion.unwrap();
-    assert!((closing / 0.01 - 1.0).abs() < 0.02, "{closing}");
-    // Where x is zero is found along with it, however far that is from the start.
-    let mut shifted = points.clone();
-    shifted.x.iter_mut().for_each(|x| *x += 3.0);
-    let with_offset = Options { free: [E, W, "data.offset"].map(str::to_owned).to_vec(), ..options.clone() };
-    let moved = super::fit(&preset(SPHERE, 1.5, 0.007, ""), &shifted, &with_offset, &Unwatched).unwrap();
-    close(&moved, &[1.3, 0.01, 0.03, 3.0, MOST], 0.02);
-    assert_eq!(moved.verdict, Verdict::Describes, "{:?}", moved.reasons);
-    // One work of adhesion alone does not describe it.
-    let one = run(&preset(SPHERE, 1.5, 0.02, ""), &points, &[E, W]);
-    assert_eq!(one.verdict, Verdict::DoesNotDescribe);
-    assert_eq!(one.reasons[0].kind, "branches", "{:?}", one.reasons);
-    let said = "--separate work_of_adhesion. With that, the model describes them";
-    assert!(one.reasons[0].sentence.ends_with(said), "{:?}", one.reasons[0]);
-    // Where both are equal nothing is pinned.
-    let start = preset("shape='sphere'\nradius_of_curvature=1.0", 1.4, 0.015, "");
-    let same = super::fit(&start, &noisy(3, false), &options, &Unwatched).unwrap();
-    close(&same, &[1.0, 0.02, 0.02], 0.1);
-    assert_eq!(same.verdict, Verdict::Describes, "{:?} {:?}", same.reasons, same.direction);
-    assert!(same.parameters.iter().all(|of| of.key != START), "{:?}", same.parameters);
 }
 
 #[test]

@@ -109,9 +109,6 @@ fn what_cannot_be_given_is_refused_with_its_reason() {
         let error = found(&start(0.8, uncertain), &points).unwrap_err().to_string();
         assert!(error.starts_with("uncertain value") && error.contains(why), "{uncertain}: {error}");
     }
-    let separate = Options { free: vec![W.to_owned()], separate: true, ..Options::default() };
-    let error = fit(&start(0.8, "gamma=5%"), &points, &separate, &Unwatched).unwrap_err().to_string();
-    assert!(error.contains("--separate makes two"), "{error}");
     // Nothing is asked for: nothing is refused, and the key stays.
     let mut other = start(0.8, "k=10%");
     other.set(data::UNCERTAIN, "".into()).unwrap();

@@ -5,6 +5,7 @@ use super::*;
 use crate::case::Case;
 use crate::measured::{Abscissa, Points, Segment};
 use crate::preset::Preset;
+use crate::preset::edge::CLOSING_ADHESION;
 use crate::problem::Control;
 use crate::problem::Turn;
 use crate::progress::Unwatched;
@@ -139,9 +140,10 @@ fn a_loop_on_waves_is_found_by_its_own_ways_up_and_back() {
     // The approach alone; each branch with a work of adhesion of its own.
     let asked = crate::measured::Asked { segment: Some(Segment::Approach), ..Default::default() };
     let free = vec![E.to_owned(), W.to_owned()];
-    let alone = Options { free: free.clone(), asked, ..Options::default() };
+    let alone = Options { free, asked, ..Options::default() };
     close(&fit(&preset(WAVES, 0.4, 0.01, ""), &points, &alone, &Unwatched).unwrap(), &[1.0, 0.004], 1e-8);
-    let apart = Options { free, separate: true, ..Options::default() };
+    let free = [E, W, CLOSING_ADHESION].map(str::to_owned).to_vec();
+    let apart = Options { free, ..Options::default() };
     let found = fit(&preset(WAVES, 3.0, 0.0013, ""), &points, &apart, &Unwatched).unwrap();
     close(&found, &[1.0, 0.004, 0.004], 1e-8);
     assert!(found.warnings.iter().all(|warning| !warning.contains("quasi-static")));
@@ -192,15 +194,15 @@ fn banded(works: [f64; 2], top: f64, n: usize) -> (Points, f64) {
 
 #[test]
 fn an_edge_is_pinned_on_waves_between_two_works_of_adhesion() {
-    let free = vec![E.to_owned(), W.to_owned()];
-    let options = Options { free, separate: true, ..Options::default() };
+    let free = [E, W, CLOSING_ADHESION].map(str::to_owned).to_vec();
+    let options = Options { free, ..Options::default() };
     for top in [0.09, 0.12] {
         let (mut points, radius) = banded([0.002, 0.004], top, 300);
         let mut noise = Normal::new(7);
         points.force.iter_mut().for_each(|force| *force += 3e-5 * noise.next());
         let found = fit(&preset(WAVES, 1.2, 0.0013, ""), &points, &options, &Unwatched).unwrap();
         assert_eq!(found.verdict, Verdict::Describes, "{top}: {:?}", found.reasons);
-        close(&found, &[1.0, 0.002, 0.004, radius], 0.01);
+        close(&found, &[1.0, 0.004, 0.002, radius], 0.01);
     }
 }
 
@@ -209,14 +211,15 @@ fn an_error_that_a_snap_makes_too_small_is_told() {
     let (mut points, _) = banded([0.001, 0.004], 0.05, 300);
     let mut noise = Normal::new(7);
     points.force.iter_mut().for_each(|force| *force += 3e-5 * noise.next());
-    let options = Options { free: vec![E.to_owned(), W.to_owned()], separate: true, ..Options::default() };
+    let free = [E, W, CLOSING_ADHESION].map(str::to_owned).to_vec();
+    let options = Options { free, ..Options::default() };
     let found = fit(&preset(WAVES, 1.2, 0.0013, ""), &points, &options, &Unwatched).unwrap();
     assert!(
-        found.warnings.iter().any(|text| text.contains("work_of_adhesion.approach is")),
+        found.warnings.iter().any(|text| text.contains("closing_work_of_adhesion is")),
         "{:?}",
         found.warnings
     );
-    let [lo, hi] = found.parameters[1].bootstrap.unwrap().interval;
+    let [lo, hi] = found.parameters[2].bootstrap.unwrap().interval;
     assert!((lo..=hi).contains(&0.001), "{lo} {hi}");
 }
 

@@ -99,6 +99,11 @@ pub(super) fn uncertain(preset: &Preset, abscissa: Abscissa, text: &str) -> Resu
 }
 
 impl Uncertain {
+    /// The same, of another target.
+    pub(super) fn with_target(self, other: impl Fn(Target) -> Target) -> Self {
+        Self { target: other(self.target), ..self }
+    }
+
     /// What it says about parameter number `at`; an error of a logarithm is a share.
     pub(super) fn prior(&self, parameter: &FreeParameter, at: usize) -> Prior {
         let sigma = self.sigma / parameter.slope(self.mean).abs();

@@ -43,9 +43,6 @@ pub struct FitArguments {
     /// preset's data.uncertain when left out
     #[arg(long, value_name = "KEY=ERROR,...", value_delimiter = ',', allow_hyphen_values = true)]
     pub(super) uncertain: Option<Vec<String>>,
-    /// Fit this key separately for approach and retraction; between them the edge is pinned
-    #[arg(long, value_name = "KEY", value_parser = ["material.work_of_adhesion", "work_of_adhesion", "gamma"])]
-    pub(super) separate: Option<String>,
     /// Fit this model instead of material.adhesion: short-range, at the edge of contact only; dugdale, with a range,
     /// where `material.cohesive_strength` is free; or rate, by which adhesion grows with the speed of the edge, where
     /// the keys of edge are free. Given several models and one file of points, the report says which one the points
@@ -325,7 +322,6 @@ impl FitArguments {
                 }
                 None => preset.data.free().map(str::to_owned).collect(),
             },
-            separate: self.separate.is_some(),
             robust: self.robust == Robust::Huber,
             asked,
             is_rate_said: !self.several.rate.is_empty(),
@@ -341,11 +337,10 @@ impl FitArguments {
 
     /// What the rows of a table depend on, apart from the files themselves.
     pub(super) fn fingerprint(&self, preset: &Preset) -> String {
-        let Self { free, uncertain, changes, separate, model, reading, range, sigma_x, sigma_force, .. } =
-            self;
+        let Self { free, uncertain, changes, model, reading, range, sigma_x, sigma_force, .. } = self;
         let Self { robust, no_scan, several: Several { rate, .. }, .. } = self;
         let said = format!(
-            "{free:?} {uncertain:?} {changes:?} {separate:?} {model:?} {reading:?} {range:?} {sigma_x:?} {sigma_force:?} {robust:?} {no_scan} {rate:?}"
+            "{free:?} {uncertain:?} {changes:?} {model:?} {reading:?} {range:?} {sigma_x:?} {sigma_force:?} {robust:?} {no_scan} {rate:?}"
         );
         sha256(format!("{said}\n{}", write(preset)).as_bytes())
     }

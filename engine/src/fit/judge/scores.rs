@@ -20,6 +20,7 @@ use crate::elementary::pow;
 use crate::gap::Shape;
 use crate::gap::shapes::PowerLaw;
 use crate::measured::{Abscissa, Segment};
+use crate::preset::edge::CLOSING_ADHESION;
 use crate::problem::Groups;
 use crate::units::Quantity;
 use crate::units::number::{said, short};
@@ -99,7 +100,7 @@ pub(super) fn of_branches(evidence: Evidence) -> Option<Reason> {
     (beyond_t(t, scatter.degrees) < FALSE_ALARM).then(|| {
         let sentence = format!(
             "a work of adhesion for approach and one for retraction describe the points better ({} standard errors): \
-             --separate work_of_adhesion",
+             free {CLOSING_ADHESION}",
             short(t.abs(), 2)
         );
         Reason::new(BRANCHES, n, sentence)

@@ -7,6 +7,7 @@ use crate::measured::branches::{MeasuredPoint, median};
 use crate::measured::{Branches, Instrument, Segment};
 use crate::preset::Preset;
 use crate::preset::data::OFFSET;
+use crate::preset::edge::CLOSING_ADHESION;
 use crate::progress::Progress;
 use crate::units::Quantity;
 use crate::units::number::{said, short, with_unit};
@@ -56,10 +57,12 @@ impl FoundOffset {
             alone.data.baseline.get_or_insert(0.0);
         }
         let has = |segment| branches.list.iter().any(|branch| branch.segment == segment);
-        let free = ["material.work_of_adhesion", OFFSET].map(str::to_owned);
+        let mut free = ["material.work_of_adhesion", OFFSET].map(str::to_owned).to_vec();
+        if has(Segment::Approach) && has(Segment::Retraction) {
+            free.push(CLOSING_ADHESION.to_owned());
+        }
         let (alone, free) = AdhesionModel::ShortRange.laid(&alone, &free);
-        let separate = has(Segment::Approach) && has(Segment::Retraction);
-        let options = Options { free, separate, bootstrap: Some((0, 0)), ..Options::default() };
+        let options = Options { free, bootstrap: Some((0, 0)), ..Options::default() };
         let fit = fit_own(&alone, &options, progress).ok()?;
         let found = fit.parameters.iter().find(|parameter| parameter.key == OFFSET)?;
         let [sign, ..] = Instrument::signs(branches.turned);
