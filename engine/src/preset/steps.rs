@@ -91,7 +91,9 @@ impl Preset {
         let positive = |quantity, text: &str| {
             let number = self.of_step(quantity, text)?;
             let usable = (1e-30..=1e30).contains(&number);
-            usable.then_some(number).ok_or_else(|| format!("{} must be above 0", quote(text.trim())))
+            usable.then_some(number).ok_or_else(|| {
+                format!("{} is out of range: it must be a number from 1e-30 to 1e30", quote(text.trim()))
+            })
         };
         match word {
             "hold" => Ok(Part::Hold { time: positive(Quantity::Time, rest)? }),

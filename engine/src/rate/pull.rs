@@ -32,6 +32,8 @@ const CHANGES: usize = 1000;
 const OVER: f64 = 1e-13;
 /// A drive along the equilibria below this many tolerances of the integrator is lost among its errors.
 const RESOLVED: f64 = 100.0;
+/// Forces that differ by no more than this share are one.
+const ROUNDING: f64 = 1e-12;
 /// How far beyond the start the table may have to reach, as this many factors of [`WIDER`].
 const WIDENINGS: usize = 60;
 const WIDER: f64 = 1.3;
@@ -353,7 +355,8 @@ impl Going<'_> {
         let peak = self.record.moments.iter().fold(start, least);
         let peak = self.record.least.iter().map(|least| &least.at).fold(peak, least);
         // A dead load is largest where the bodies come apart, not where the integrator stopped short of it.
-        let peak = last_contact.filter(|apart| apart.force <= peak.force).unwrap_or(peak);
+        let is_peak = |apart: &Moment| apart.force - peak.force <= ROUNDING * peak.force.abs();
+        let peak = last_contact.filter(is_peak).unwrap_or(peak);
         Pull {
             start,
             pinned_until: self.pinned_until,

@@ -543,6 +543,17 @@ fn programmes(preset: &Preset, asked: &AskedPulls) -> Result<Vec<Programme>, Pul
     Ok(vec![(rate, steps)])
 }
 
+/// The contact radius at which a dead load begins to fall: from there on the edge exceeds ten times its least speed since the
+/// last snap.
+fn before_fall(pull: &Pull) -> f64 {
+    const FALLS: f64 = 10.0;
+    let innermost = pull.snaps.last().map_or(f64::INFINITY, |snap| snap.to);
+    let moves = |moment: &&Moment| moment.contact_radius <= innermost && moment.speed > 0.0;
+    let least = pull.moments.iter().filter(moves).map(|moment| moment.speed).fold(f64::INFINITY, f64::min);
+    let slow = pull.moments.iter().filter(moves).rfind(|moment| moment.speed <= FALLS * least);
+    slow.map_or(0.0, |moment| moment.contact_radius)
+}
+
 /// Where a pull leaves the range in which the law is good.
 fn limits(
     preset: &Preset,
@@ -559,8 +570,9 @@ fn limits(
     });
     let mut warnings = Vec::new();
     // Towards the last contact G grows without bound whatever the rate: what matters is what the edge passes before
-    // that, up to the largest pull and in every snap.
-    let inner = pull.snaps.iter().map(|snap| snap.to).fold(pull.peak.contact_radius, f64::min);
+    // that, up to the largest pull, or to the fall of a dead load, and in every snap.
+    let falls = if case.control == Control::Force { before_fall(pull) } else { pull.peak.contact_radius };
+    let inner = pull.snaps.iter().map(|snap| snap.to).fold(falls, f64::min);
     let watched = pull.moments.iter().filter(|moment| moment.contact_radius >= inner.max(f64::MIN_POSITIVE));
     let ratios =
         watched.map(|at| [at.energy_release_rate / case.reduced.work_of_adhesion, at.contact_radius]);
