@@ -98,6 +98,43 @@ fn limit_points_over_one_number() {
 }
 
 #[test]
+fn forces_over_the_modulus_are_those_of_its_values() {
+    let folder = tempfile::tempdir().unwrap();
+    let of = |modulus: &str| {
+        let set = format!("E*={modulus}");
+        let asked = ["map", "fig-9", "--set", "basis.kind=exact", "--set", &set, "--control", "force"];
+        let axes = ["--x-key", "material.effective_modulus=1.5..2.5", "--y", "force", "--format", "csv"];
+        text(folder.path(), &[&asked[..], &axes].concat())
+    };
+    let rows = of("1");
+    assert_eq!(rows, of("2"));
+    // The path begins its jumps at limit points of the force.
+    let path = [
+        "unload",
+        "fig-9",
+        "--set",
+        "basis.kind=exact",
+        "--set",
+        "E*=1.5",
+        "--control",
+        "force",
+        "--format",
+        "csv",
+    ];
+    let path = text(folder.path(), &path);
+    let numbers =
+        |line: &str| -> Vec<f64> { line.split(',').map(|cell| cell.parse().unwrap_or(f64::NAN)).collect() };
+    let at = path.lines().next().unwrap().split(',').position(|name| name == "before_force").unwrap();
+    let begins: Vec<f64> = path.lines().skip(1).map(|line| numbers(line)[at]).collect();
+    let limits: Vec<f64> =
+        rows.lines().skip(1).map(numbers).filter(|row| row[4] == 1.5).map(|row| row[5]).collect();
+    assert!(begins.len() > 5, "{path}");
+    for force in begins {
+        assert!(limits.iter().any(|limit| (limit / force - 1.0).abs() < 1e-8), "{force} {limits:?}");
+    }
+}
+
+#[test]
 fn files_are_replaced_only_when_told_and_figures_are_of_their_format() {
     let home = tempfile::tempdir().unwrap();
     let folds = ["map", "--x-key", "groups.adhesion=log:0.005..0.2", "--y", "approach"];

@@ -5,7 +5,7 @@ use super::problem::Head;
 use super::rows::{ReportTable, RowsError};
 use crate::case::Case;
 use crate::preset::{BasisSpec, Preset};
-use crate::problem::Control;
+use crate::problem::{Control, Units};
 use crate::progress::{Progress, ProgressPart, Stopped};
 use crate::stability::{Counts, Family, FamilyError, Folds, Map, MapAxis, MapPoint, Onset, Sort, Spacing};
 use serde::Serialize;
@@ -269,7 +269,7 @@ impl MapReport {
     fn rows_of_folds(&mut self, family: &Family, folds: &Folds, y: &Ordinate) {
         let row = |point: &MapPoint| {
             let mut row = MapRow::of(family, point);
-            let units = family.preset.problem().reduced_by(family.length).units;
+            let (_, units) = device(family, point);
             row.y = Some(match y {
                 Ordinate::Approach => point.approach * units.length,
                 Ordinate::Force => point.force * units.force,
@@ -293,14 +293,20 @@ impl MapReport {
     }
 }
 
+/// The device at a point of a map, and the units there.
+fn device(family: &Family, point: &MapPoint) -> (Control, Units) {
+    family.member(&point.at[..family.axes.len()]).map_or_else(
+        |_| (Control::Displacement, family.preset.problem().reduced_by(family.length).units),
+        |member| (member.control, member.units),
+    )
+}
+
 impl MapRow {
     fn of(family: &Family, point: &MapPoint) -> Self {
-        let units = family.preset.problem().reduced_by(family.length).units;
+        let (device, units) = device(family, point);
         let value = |k: usize| {
             family.axes.get(k).map(|axis| axis.value(point.at[k])).filter(|value| value.is_finite())
         };
-        let shares = &point.at[..family.axes.len()];
-        let device = family.member(shares).map_or(Control::Displacement, |member| member.control);
         let unit = if device == Control::Force { units.force } else { units.length };
         Self {
             line: None,

@@ -11,7 +11,7 @@ use crate::disc::table::KeptTables;
 use crate::disc::{ExactBasis, Panels, Table, TableError, waves};
 use crate::gap::{Form, Gap, Shape, Wave};
 use crate::preset::{Invalid, Preset};
-use crate::problem::{Control, Reduced, Start};
+use crate::problem::{Control, Reduced, Start, Units};
 use crate::progress::{Stopped, Unwatched};
 use crate::quasistatic::monotone::weighted;
 use crate::quasistatic::start::{StartError, contact_radius};
@@ -494,7 +494,8 @@ impl Family {
             let own = self.own.as_ref().ok_or(Stopped)?;
             TransformSource::One(own.up_to(reach)?)
         };
-        Ok(Member { family: self, source, root: root_of(work_of_adhesion), work_of_adhesion, control })
+        let root = root_of(work_of_adhesion);
+        Ok(Member { family: self, source, root, work_of_adhesion, control, units })
     }
 }
 
@@ -533,6 +534,8 @@ pub struct Member<'a> {
     pub work_of_adhesion: f64,
     /// The device.
     pub control: Control,
+    /// Its units: that of the force follows E*, which may be a number of the family.
+    pub units: Units,
 }
 
 impl Member<'_> {
