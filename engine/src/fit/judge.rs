@@ -46,9 +46,9 @@ use crate::units::number::{said, short, significant};
 use crate::units::{Quantity, UnitSystem};
 use nalgebra::DMatrix;
 
-/// A contact this wide, or an approach this deep, in units of R, is not that of a soft ball.
+/// No contact is wider, or approach deeper, than this in units of R, and beyond this width a contact is doubtful.
+const LARGEST: f64 = 1.0;
 const WIDE: f64 = 0.5;
-const DEEP: f64 = 1.0;
 /// The works of adhesion that surfaces have as a rule, in J/m².
 const ADHESIONS: [f64; 2] = [1e-4, 10.0];
 /// The range of moduli of everything people press, in Pa.
@@ -196,10 +196,10 @@ fn unlikely(problem: &FitProblem, solved: &SolvedFit, preset: &Preset) -> Vec<Re
     let radius = preset.gap.radius_of_curvature();
     if let (Some(radius), Some(paths)) = (radius, problem.paths(u)) {
         let (widest, deepest) = extent(problem, u, &paths);
-        if widest > WIDE * radius {
+        if widest > LARGEST * radius {
             unit(widest / radius, format!("the contact radius reaches {} R", short(widest / radius, 3)));
         }
-        if deepest > DEEP * radius {
+        if deepest > LARGEST * radius {
             unit(deepest / radius, format!("the approach reaches {} R", short(deepest / radius, 3)));
         }
     }
@@ -217,7 +217,7 @@ pub(super) fn doubts(
     fitted: &[Fitted],
     (reasons, is_known): (&[Reason], bool),
 ) -> Vec<String> {
-    let Evidence { problem, scatter, .. } = evidence;
+    let Evidence { problem, solved, scatter, .. } = evidence;
     let has_speed = reasons.iter().any(|reason| rate::KINDS.contains(&reason.kind));
     let of_edge = || rate::of_untimed(evidence);
     let is_sharp = problem.preset.cohesion().is_none() && !is_pulled(&problem.preset);
@@ -267,6 +267,7 @@ pub(super) fn doubts(
         }
     }
     doubts.extend(unknown(problem, fitted));
+    doubts.extend(wide(problem, &solved.minimum.parameters));
     let free = problem.data.iter().filter(|datum| datum.free).count().max(1) as f64;
     if let Some(s) = scatter.contact.filter(|s| is_known && *s > NOISIER + OF_FEW / free.sqrt()) {
         doubts.push(format!(
@@ -276,6 +277,16 @@ pub(super) fn doubts(
         ));
     }
     doubts
+}
+
+/// A sentence on a contact that is wide for its ball, in SI.
+fn wide(problem: &FitProblem, u: &[f64]) -> Option<String> {
+    let radius = problem.preset.gap.radius_of_curvature()?;
+    let (widest, _) = extent(problem, u, &problem.paths(u)?);
+    let is_si = matches!(problem.preset.units, UnitSystem::Si(_));
+    (is_si && (WIDE..LARGEST).contains(&(widest / radius))).then(|| {
+        format!("the contact radius reaches {} R: check R and the unit of x", short(widest / radius, 3))
+    })
 }
 
 /// A sentence on positive values whose errors are larger than they are. A work of adhesion has a sentence of its own.

@@ -107,14 +107,19 @@ pub struct Scatter {
     pub apart: usize,
 }
 
+/// The size beyond which a residual among these is an outlier.
+pub(super) fn outlier(rows: &[ScatterRow]) -> f64 {
+    let sizes = rows.iter().map(|row| row.residual.abs()).collect();
+    OUTLIER * 1.4826 * median(sizes).unwrap_or(0.0)
+}
+
 impl FitProblem {
     /// The residuals of one branch, in contact along the path or apart in the order of measurement, without outliers.
     /// Rows in contact that go one way in that order are kept in it: sorted by an x with noise, or by their forces where x
     /// rests, neighbours would have what is in their residuals.
     pub(super) fn rows(&self, solved: &SolvedFit, branch: usize, free: bool, part: usize) -> Vec<ScatterRow> {
         let mut rows = self.in_order(solved, branch, free, part);
-        let sizes = rows.iter().map(|row| row.residual.abs()).collect();
-        let limit = OUTLIER * 1.4826 * median(sizes).unwrap_or(0.0);
+        let limit = outlier(&rows);
         rows.retain(|row| row.residual.abs() <= limit);
         rows
     }

@@ -228,8 +228,9 @@ fn same_free_force(list: &mut [OrderedBranch], noise: &Noise, notes: &mut Vec<St
 }
 
 /// Takes the last rows of a branch as apart if another branch has rows apart and these have the same force: with few rows
-/// the force may go from contact to zero without a visible jump. This is done for short branches, and for approaches that
-/// begin where a retraction is well apart, since bodies that close touch further in than bodies that open.
+/// the force may go from contact to zero without a visible jump. This is done for short branches, for approaches that
+/// begin where a retraction is well apart, since bodies that close touch further in than bodies that open, and for
+/// retractions that end with a jump to that force, even if it is in the last row.
 pub(super) fn as_elsewhere(list: &mut [OrderedBranch]) {
     /// Forces are equal within this many times the range of those apart, or within this share of the range of the
     /// branch; and the fewest such rows.
@@ -239,6 +240,8 @@ pub(super) fn as_elsewhere(list: &mut [OrderedBranch]) {
     /// The fewest rows of an approach that lie where a retraction is well apart, and how many of them must have its force.
     const FEWEST_THERE: usize = 3;
     const MOST_THERE: f64 = 0.9;
+    /// A jump begins this many times the range of those apart below their force.
+    const JUMPS: f64 = 5.0;
     let forces: Vec<f64> = list.iter().flat_map(|(branch, _)| branch.free.iter().map(|p| p.force)).collect();
     let Some(level) = median(forces.clone()) else { return };
     let spread = range(forces.into_iter());
@@ -260,7 +263,11 @@ pub(super) fn as_elsewhere(list: &mut [OrderedBranch]) {
             && of_all >= FEWEST_THERE
             && of_same as f64 >= MOST_THERE * of_all as f64;
         let count = branch.attached.iter().rev().take_while(same).count();
-        if count >= FEWEST && (is_short || begins_apart) {
+        let before = branch.attached.iter().rev().nth(count);
+        let comes_off = branch.segment == Segment::Retraction
+            && count > 0
+            && before.is_some_and(|point| point.force < level - JUMPS * spread);
+        if count >= FEWEST && (is_short || begins_apart) || comes_off {
             branch.free = branch.attached.split_off(branch.attached.len() - count);
         }
     }

@@ -8,11 +8,12 @@
 //!
 //! v is 1/n for white noise. The second term removes what a fit of the same points takes out of a mean. False alarms,
 //! each for white noise on the right model: F 1 in 1000, the largest bin 1 in 1000, the scale 1 in 1000 (its limit from
-//! 20 000 simulated series of 8 to 300 rows), runs 1 in 1000.
+//! 20 000 simulated series of 8 to 300 rows), runs 1 in 1000. All of these leave outliers out: many of them side by side are
+//! rows that the curve misses.
 
 use super::super::chance::{beyond_f, beyond_t};
 use super::super::problem::{FitProblem, Target};
-use super::super::scatter::ScatterRow;
+use super::super::scatter::{ScatterRow, outlier};
 use super::super::verdict::Reason;
 use super::{Evidence, ROUNDING, runs};
 use crate::elementary::{hypot, ln};
@@ -32,6 +33,8 @@ const BINS: usize = 12;
 /// Runs are counted in at least this many rows, and fewer runs by this many of their deviations are not chance.
 const RUNS_OF: usize = 20;
 const FEWER_RUNS: f64 = -3.3;
+/// So many outliers side by side, all on one side of the curve, are not chance, even where one row in five is one.
+const MISSED: usize = 8;
 /// A mean must keep at least this share of its variance: a bin that decides a value alone says nothing.
 const LEAST_LEFT: f64 = 0.05;
 
@@ -53,6 +56,7 @@ pub(super) fn of_contact(evidence: Evidence) -> Vec<Reason> {
     let scatter = evidence.scatter;
     let Some(s) = scatter.contact.map(|s| s.max(ROUNDING)) else { return Vec::new() };
     let mut reasons = of_bins(evidence, s);
+    reasons.extend(of_missed(evidence));
     let count = scatter.rows as f64 / scatter.correlation.rows();
     let ratio = scatter.residuals / s;
     let limit =
@@ -98,7 +102,7 @@ fn held(problem: &FitProblem) -> String {
 
 /// Whether the means along the path are off the curve.
 fn of_bins(evidence: Evidence, s: f64) -> Vec<Reason> {
-    let Evidence { problem, scatter, .. } = evidence;
+    let scatter = evidence.scatter;
     let bins = bins(evidence);
     let mut reasons = Vec::new();
     let tests = bins.len() as f64;
@@ -112,25 +116,56 @@ fn of_bins(evidence: Evidence, s: f64) -> Vec<Reason> {
     let squares: f64 = bins.iter().map(|bin| off(bin).powi(2)).sum();
     let all = beyond_f(squares / tests, left.clamp(1.0, tests), scatter.degrees);
     if chance(worst) < FALSE_ALARM || all < FALSE_ALARM {
-        // As the file has it.
-        let [sign, ..] = Instrument::signs(problem.turned);
-        let shown = |x: f64| said(&problem.preset.units, Quantity::Length, sign * x);
         reasons.push(Reason::new(
             "bins",
             off(worst),
             format!(
-                "the curve misses the points: over {} of the {}, from {} = {} to {}, the mean residual \
+                "the curve misses the points: over {} of the {}, from {} to {}, the mean residual \
                  is {} standard errors",
                 counted(worst.count, "row"),
                 worst.segment.name(),
-                if problem.abscissa == Abscissa::Radius { "s" } else { "x" },
-                shown(worst.x[0]),
-                shown(worst.x[1]),
+                shown(evidence.problem, worst.x[0]),
+                shown(evidence.problem, worst.x[1]),
                 short(off(worst), 2).replace('-', "−")
             ),
         ));
     }
     reasons
+}
+
+/// The most outliers side by side.
+fn of_missed(Evidence { problem, solved, .. }: Evidence) -> Option<Reason> {
+    let of_branch = |branch: usize| {
+        let rows = problem.in_order(solved, branch, false, 0);
+        let limit = outlier(&rows);
+        let side = |row: &ScatterRow| if row.residual.abs() > limit { row.residual.signum() } else { 0.0 };
+        let runs: Vec<&[ScatterRow]> = rows.chunk_by(|a, b| side(a) == side(b)).collect();
+        runs.into_iter().filter(|run| side(&run[0]) != 0.0).max_by_key(|run| run.len()).map(<[_]>::to_vec)
+    };
+    let missed = (0..problem.branches()).filter_map(of_branch).max_by_key(Vec::len)?;
+    let first = problem.data[missed.first()?.index];
+    let mean = missed.iter().map(|row| row.residual).sum::<f64>() / missed.len() as f64;
+    let x = missed.iter().map(|row| problem.data[row.index].point.x);
+    let [lo, hi] = x.fold([f64::INFINITY, f64::NEG_INFINITY], |[lo, hi], x| [lo.min(x), hi.max(x)]);
+    (missed.len() >= MISSED).then(|| {
+        let sentence = format!(
+            "the curve misses {} side by side on the {}, from {} to {}, by {} sigma: they count as outliers, and one cause for all \
+             of them is likely",
+            counted(missed.len(), "row"),
+            first.segment.name(),
+            shown(problem, lo),
+            shown(problem, hi),
+            short(mean, 2).replace('-', "−")
+        );
+        Reason::new("missed", mean, sentence)
+    })
+}
+
+/// An x as the file has it.
+fn shown(problem: &FitProblem, x: f64) -> String {
+    let [sign, ..] = Instrument::signs(problem.turned);
+    let symbol = if problem.abscissa == Abscissa::Radius { "s" } else { "x" };
+    format!("{symbol} = {}", said(&problem.preset.units, Quantity::Length, sign * x))
 }
 
 /// The bins of all branches.
