@@ -2,9 +2,9 @@
 
 use clap::ValueEnum;
 use pulloff_engine::text::greek;
+use ratatui::buffer::Buffer;
 use ratatui::style::Color::{Blue, Cyan, Green, Magenta, Red, Yellow};
 use ratatui::style::{Color, Modifier, Style};
-use ratatui::symbols::border;
 use ratatui::symbols::merge::MergeStrategy;
 use ratatui::widgets::Block;
 
@@ -173,17 +173,6 @@ styles! {
         [PLAIN; 6];
 }
 
-const ASCII_BORDER: border::Set<'static> = border::Set {
-    top_left: "+",
-    top_right: "+",
-    bottom_left: "+",
-    bottom_right: "+",
-    vertical_left: "|",
-    vertical_right: "|",
-    horizontal_top: "-",
-    horizontal_bottom: "-",
-};
-
 impl Theme {
     /// A theme; in ASCII its charts are ASCII too.
     pub fn new(palette: Palette, charts: Charts, ascii: bool) -> Self {
@@ -227,10 +216,7 @@ impl Theme {
 
     /// The frame of a panel, which shares its walls with its neighbours.
     pub fn block<'a>(self, selected: bool) -> Block<'a> {
-        Block::bordered()
-            .border_set(self.border())
-            .border_style(self.frame(selected))
-            .merge_borders(MergeStrategy::Exact)
+        Block::bordered().border_style(self.frame(selected)).merge_borders(MergeStrategy::Exact)
     }
 
     /// As much of a line as fits without cutting a word or a number; an ellipsis stands for the rest.
@@ -250,11 +236,6 @@ impl Theme {
         self.text(&greek(label))
     }
 
-    /// The frame of a panel.
-    pub fn border(self) -> border::Set<'static> {
-        if self.ascii { ASCII_BORDER } else { border::PLAIN }
-    }
-
     /// A panel's frame, selected or not.
     pub fn frame(self, selected: bool) -> Style {
         if selected { self.styles().selected_frame } else { self.styles().frame }
@@ -268,6 +249,19 @@ impl Theme {
     /// The selected line.
     pub fn selection(self) -> Style {
         self.styles().selection
+    }
+
+    /// Puts what the terminal can show in place of frames, which know their walls by their Unicode, and of whatever else is left.
+    pub fn shown_by_terminal(self, buffer: &mut Buffer) {
+        if !self.ascii {
+            return;
+        }
+        for cell in &mut buffer.content {
+            if let Some(other) = cell.symbol().chars().next().filter(|c| !c.is_ascii()) {
+                // A cell has room for one character.
+                cell.set_symbol(&transliterate(other)[..1]);
+            }
+        }
     }
 
     /// Secondary text.
@@ -293,11 +287,17 @@ impl Theme {
 
 fn transliterate(c: char) -> &'static str {
     match c {
+        '─' => "-",
+        '│' => "|",
+        // Corners and crossings of frames.
+        '┌'..='╋' => "+",
         'δ' => "d",
         'λ' => "l",
         'γ' => "g",
         'α' => "alpha",
         'μ' => "mu",
+        'µ' => "u",
+        '₀' => "0",
         'Δ' => "D",
         '²' => "2",
         '′' => "'",

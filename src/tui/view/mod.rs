@@ -48,6 +48,7 @@ pub fn draw(frame: &mut Frame<'_>, app: &App) -> usize {
         Some(Dialog::Help(shown)) => help::draw(frame, area, app, shown),
         Some(overlay) => overlays::draw(frame, area, app, overlay),
     }
+    app.theme.shown_by_terminal(frame.buffer_mut());
     regions.charts.len()
 }
 
