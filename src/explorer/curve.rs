@@ -7,7 +7,7 @@
 //! Which states are admissible takes longer than both, and is added to a curve that is on the screen already.
 
 use super::progress::{CurveStage, Staged};
-use super::setting::{Setting, same_curve};
+use super::setting::{Setting, basis, same_curve};
 use super::theory::Theory;
 use pulloff_engine::case::{Case, CaseError};
 use pulloff_engine::preset::Preset;
@@ -17,6 +17,7 @@ use pulloff_engine::quasistatic::overlap::overlaps;
 use pulloff_engine::quasistatic::{
     Admissibility, Curve, Detail, Limit, Overlap, Path, Sample, Stability, Stiffness,
 };
+use pulloff_engine::report::path::LOOP_IS_EXACT;
 use pulloff_engine::report::{OverlapReport, PathReport};
 use std::sync::Arc;
 
@@ -97,7 +98,8 @@ pub struct CurveData {
 impl ProblemCurve {
     /// Computes the curve of `preset`.
     pub fn compute(preset: &Preset, progress: &Staged<'_>) -> Result<Self, CaseError> {
-        let case = Case::with_range(preset, progress)?;
+        let walked = Preset { basis: basis(preset), ..preset.clone() };
+        let case = Case::with_range(&walked, progress)?;
         progress.enter(CurveStage::Curve(1));
         let mut curve = case.curve(progress)?;
         progress.enter(CurveStage::Limits);
@@ -111,6 +113,10 @@ impl ProblemCurve {
         let start = (!in_zone).then(|| curve.equilibrium.explicit(curve.outermost())).flatten();
         let digits = if in_zone { ZONE_DIGITS } else { case.basis.trusted_digits(&case.reduced, case.start) };
         let warnings = if in_zone { case.warnings_of_problem() } else { case.warnings(curve.outermost()) };
+        let mut notes = if in_zone { Vec::new() } else { case.notes(curve.outermost()) };
+        if walked.basis != preset.basis {
+            notes.push(LOOP_IS_EXACT.to_owned());
+        }
         Ok(Self {
             preset: preset.clone(),
             start: start.as_ref().map(|point| curve.equilibrium.admissibility(point, progress)),
@@ -121,7 +127,7 @@ impl ProblemCurve {
             stiffness: start.as_ref().map(|point| curve.equilibrium.state_and_stiffness(point).1),
             critical_force: case.critical_force().unwrap_or(0.0),
             warnings,
-            notes: if in_zone { Vec::new() } else { case.notes(curve.outermost()) },
+            notes,
             curve,
             case,
         })

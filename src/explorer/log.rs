@@ -4,6 +4,7 @@
 //! its events has one number, on charts, in the log, on the status line and in files. A jump walked by hand that is not
 //! an event of the path has no number.
 
+use super::loops::LoopData;
 use super::model::Model;
 use super::node::{Node, NodeKind};
 use pulloff_engine::problem::Begin;
@@ -124,6 +125,19 @@ impl Model {
             Begin::Apart => self.cycle()?.report(),
             Begin::Disc => self.curve.as_ref()?.report.as_ref(),
         }
+    }
+
+    /// The warnings about the values and their path.
+    pub fn warnings(&self) -> Vec<String> {
+        let mut warnings = self.curve.as_ref().map_or_else(Vec::new, |curve| curve.warnings());
+        let whole = self
+            .cycle()
+            .filter(|whole| self.preset.path.begin == Begin::Apart && whole.is_of_preset(&self.preset));
+        let of_loop = whole.and_then(LoopData::report).map_or(&[][..], |report| &report.warnings);
+        let new: Vec<String> =
+            of_loop.iter().filter(|warning| !warnings.contains(warning)).cloned().collect();
+        warnings.extend(new);
+        warnings
     }
 
     /// The events of the path.

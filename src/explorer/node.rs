@@ -4,6 +4,7 @@ use super::setting::Setting;
 use pulloff_engine::annuli::Contacts;
 use pulloff_engine::exact;
 use pulloff_engine::problem::Control;
+use pulloff_engine::quasistatic::path::EventKind;
 use pulloff_engine::quasistatic::walk::{Ahead, At, edges};
 use pulloff_engine::quasistatic::{Admissibility, Event, Stability, State, StatePoint, Stiffness};
 use serde::{Deserialize, Serialize};
@@ -85,7 +86,18 @@ impl Node {
 
     /// The bodies are apart: the walk ends here.
     pub fn is_apart(&self) -> bool {
-        matches!(&self.kind, NodeKind::Jump(event) if event.after.is_none())
+        self.parted_by().is_some()
+    }
+
+    /// The event by which the bodies came apart, in words.
+    pub fn parted_by(&self) -> Option<&'static str> {
+        match &self.kind {
+            NodeKind::Jump(event) if event.after.is_none() && event.kind == EventKind::SnapOff => {
+                Some("snap-off")
+            }
+            NodeKind::Jump(event) if event.after.is_none() => Some("last contact"),
+            _ => None,
+        }
     }
 
     /// For an inadmissible state, the reduced r at fault, with the crest that would touch there (and its number), or

@@ -104,7 +104,7 @@ impl PullData {
         let smooth = smooth.map(|force| format!(", {} × smooth", three(run.peak.force / force)));
         let peaks = run.tension_peaks.len();
         let seen =
-            (!of_force && (1..=jumps).contains(&peaks)).then(|| format!("; {peaks}/{jumps} jumps seen"));
+            (!of_force && (1..=jumps).contains(&peaks)).then(|| format!("; {peaks}/{jumps} force peaks"));
         Some(format!(
             "Largest pull {peak} {rate}{}{}; edge to {}",
             smooth.unwrap_or_default(),
@@ -139,7 +139,7 @@ impl Model {
             Err(reason) => return Some(format!("No pull: {reason}")),
             Ok(report) => report,
         };
-        let known = self.curve.as_ref().map_or_else(Vec::new, |curve| curve.warnings());
+        let known = self.warnings();
         let warning = report.warnings.iter().find(|warning| !known.contains(warning));
         let events = self.path().map_or(&[][..], |path| &path.events);
         let jumps = events.iter().filter(|event| matches!(event.kind, "snap" | "last-contact")).count();

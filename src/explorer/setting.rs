@@ -1,7 +1,7 @@
 //! The problem that a state of the walk solves.
 
-use pulloff_engine::preset::Preset;
-use pulloff_engine::problem::{Control, Reduced, Units};
+use pulloff_engine::preset::{BasisSpec, Preset};
+use pulloff_engine::problem::{Begin, Control, Reduced, Units};
 use pulloff_engine::quasistatic::Scales;
 
 /// The problem a node was solved in: the parameters may change from node to node.
@@ -41,6 +41,11 @@ impl Setting {
 /// Whether two presets have the same equilibrium curve: material, gap, basis, start and end are equal.
 pub(super) fn same_curve(a: &Preset, b: &Preset) -> bool {
     let closing = |preset: &Preset| preset.edge.closing_work_of_adhesion;
-    (a.material, closing(a), &a.gap, a.basis, a.path.start, a.path.end_contact_radius)
-        == (b.material, closing(b), &b.gap, b.basis, b.path.start, b.path.end_contact_radius)
+    (a.material, closing(a), &a.gap, basis(a), a.path.start, a.path.end_contact_radius)
+        == (b.material, closing(b), &b.gap, basis(b), b.path.start, b.path.end_contact_radius)
+}
+
+/// The basis in which a preset is walked: a loop has no ring elements, as everywhere.
+pub(super) fn basis(preset: &Preset) -> BasisSpec {
+    if preset.path.begin == Begin::Apart { BasisSpec::Exact } else { preset.basis }
 }

@@ -161,6 +161,13 @@ fn standing(model: &Model, node: &Node, control: Control) -> String {
     }
     match (node.stability.under(control), &node.kind) {
         (true, NodeKind::Start) if model.preset.path.begin == Begin::Apart => {
+            let is_first =
+                |kind: EventKind| model.path_events().first().is_some_and(|event| event.kind == kind.name());
+            if is_first(EventKind::JumpIn) {
+                return format!(
+                    "The bodies have jumped into range, event 1, without contact. {next} runs to the next event"
+                );
+            }
             format!("The bodies have touched, event 1, and are at rest. {next} runs to the next event")
         }
         (true, NodeKind::Start) => {

@@ -55,6 +55,8 @@ pub fn cycle_figure(report: &PathReport, curve: &[CurvePoint], scale: Scale<'_>)
         Some(lost) => format!("lost {}", shown(lost)),
         None => format!("lost {} and the fall", shown(report.totals.dissipated_before_last_contact)),
     });
+    let band = report.totals.dead_band;
+    figure.notes.extend(band.map(|band| format!("and {} in the dead band", shown(band.dissipated))));
     figure
 }
 

@@ -132,7 +132,11 @@ fn notes(data: &StudyData, without: usize) -> impl Iterator<Item = String> {
     let missing = without.saturating_sub(count - done);
     let all = [
         (done < count).then(|| format!("{done} of {count}")),
-        is_unchecked.then(|| "one disc: states may be inadmissible".to_owned()),
+        data.wish
+            .column
+            .is_blind_to(&data.wish.key)
+            .then(|| "the same at any speed: see peak_force".to_owned()),
+        is_unchecked.then(|| "one disc, not checked".to_owned()),
         (missing > 0).then(|| format!("{missing} without a value: the cross-hair says why")),
     ];
     all.into_iter().flatten()

@@ -249,6 +249,10 @@ impl Default for Extent {
 /// The two losses agree when they differ by at most this share of the loss.
 pub const LOSS_AGREEMENT: f64 = 1e-6;
 
+/// The note on a loop of a preset with ring elements.
+pub const LOOP_IS_EXACT: &str =
+    "a loop is computed with exact states, without ring elements, whatever the basis";
+
 impl PathReport {
     /// Unloads `preset` from its start.
     ///
@@ -338,9 +342,7 @@ impl PathReport {
             );
         }
         if is_loop && matches!(preset.basis, BasisSpec::Rings { .. }) {
-            notes.push(
-                "a loop is computed with exact states, without ring elements, whatever the basis".to_owned(),
-            );
+            notes.push(LOOP_IS_EXACT.to_owned());
         }
         let states = path.states.iter().map(|state| PathStateReport {
             piece: state.piece,

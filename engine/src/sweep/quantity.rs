@@ -2,8 +2,8 @@
 
 use super::fault::Fault;
 use super::stage::{Cell, CurveMinima, Fitting, OnPath, PresetValues};
-use crate::preset::Preset;
 use crate::preset::model::BasisSpec;
+use crate::preset::{Preset, edge};
 use crate::problem::{ContactKind, Control};
 use crate::report::pull::RunReport;
 use crate::text::{closest, quote};
@@ -238,6 +238,12 @@ impl QuantityColumn {
     /// Whether it is of the unloading from the start, whatever the loop of the preset is.
     pub(super) fn is_of_unloading(&self) -> bool {
         matches!(self.quantity.of, Stage::Unloading(_) | Stage::Least(..))
+    }
+
+    /// Whether it is of an infinitely slow path and `key` of the edge's speed, so that it does not depend on it.
+    pub fn is_blind_to(&self, key: &str) -> bool {
+        let is_of_speed = edge::KEYS.contains(&key) && key != edge::CLOSING_ADHESION;
+        is_of_speed && !matches!(self.quantity.of, Stage::Pull(_) | Stage::Fit(_))
     }
 
     /// Whether it is of an unloading of one disc, in problems like `preset`: whether its states are admissible is not

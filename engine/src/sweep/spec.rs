@@ -214,6 +214,18 @@ impl Spec {
                 values.join(", ")
             ));
         }
+        for axis in &self.axes {
+            let blind = self.columns.iter().filter(|column| column.is_blind_to(&axis.key));
+            let names: Vec<&str> = blind.map(|column| column.quantity.name).collect();
+            if !names.is_empty() {
+                warnings.push(format!(
+                    "{}: of an infinitely slow path, the same for every {}; of a pull at a rate are peak_force, \
+                     last_contact_time, dissipated, tension_peaks and top_edge_speed",
+                    names.join(", "),
+                    axis.key
+                ));
+            }
+        }
         let of_unloading = self.columns.iter().filter(|column| column.is_of_unloading());
         let names: Vec<&str> = of_unloading.map(|column| column.quantity.name).collect();
         let turns = self.axes.iter().any(|axis| axis.key.starts_with("path.turn_"));

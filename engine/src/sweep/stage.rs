@@ -121,7 +121,9 @@ impl OnPath {
     }
 
     pub(super) fn loss(&self) -> Option<Cell> {
-        self.path.totals.dissipated.map(Cell::Number)
+        let totals = &self.path.totals;
+        let band = totals.dead_band.map_or(0.0, |band| band.lost);
+        totals.dissipated.map(|lost| Cell::Number(lost + band))
     }
 
     pub(super) fn largest_pull(&self) -> Option<Cell> {

@@ -9,6 +9,7 @@ use pulloff_engine::units::Unit;
 use serde::{Deserialize, Serialize};
 use std::borrow::Cow;
 use std::fmt::Write;
+use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 /// The first line of the rows of a profile.
@@ -69,6 +70,14 @@ pub struct SavedFile {
     pub held: Option<Aside>,
 }
 
+/// A folder, or the current one, as it is called from everywhere: a session may be resumed in another one.
+fn absolute(folder: Option<&Path>) -> Option<PathBuf> {
+    match folder.filter(|folder| !folder.as_os_str().is_empty()) {
+        Some(folder) => std::path::absolute(folder).ok(),
+        None => std::env::current_dir().ok(),
+    }
+}
+
 impl SavedFile {
     pub(super) fn of(file: &Aside) -> Self {
         let (name, folder, profile) = match file {
@@ -78,7 +87,7 @@ impl SavedFile {
             }
             Aside::Curve(source) => (&source.name, &source.folder, None),
         };
-        let folder = folder.as_deref().map(SavedPath::of);
+        let folder = absolute(folder.as_deref()).or_else(|| folder.clone()).as_deref().map(SavedPath::of);
         Self { name: name.clone(), folder, profile, data: None, text: None, held: Some(file.clone()) }
     }
 

@@ -92,8 +92,7 @@ fn width(spans: &[Span<'_>]) -> usize {
 }
 
 fn warnings(app: &App) -> Vec<String> {
-    let warnings = app.model.curve.iter().flat_map(|curve| curve.warnings());
-    warnings.map(|text| app.theme.text(&text)).collect()
+    app.model.warnings().iter().map(|text| app.theme.text(text)).collect()
 }
 
 /// Whether there is room for the places: a job under way needs it more.

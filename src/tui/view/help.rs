@@ -85,6 +85,7 @@ const SHORT: &[(&str, &str)] = &[
     ),
     ("W", "beside a pin: the energy lost"),
     ("lost 3e-4", "energy lost in jumps; with a + after it, plus that of a jump without bound"),
+    ("dead band", "what the area that closed costs more when it opens: the rest of what a loop loses"),
     ("no bound", "a dead load falls for ever: the loss at the last contact has no limit"),
     ("by area agrees", "the same loss as the area between the curve and the way of the device"),
     ("admissible", "whether the bodies stay apart outside the contact"),
@@ -131,7 +132,7 @@ impl HelpLine {
 /// The full text of what narrow screens cut elsewhere: the status, warnings, notes.
 pub fn now(app: &App) -> Vec<String> {
     let curve = app.model.curve.as_ref();
-    let warnings = curve.iter().flat_map(|curve| curve.warnings()).map(|text| format!("! {text}"));
+    let warnings = app.model.warnings().into_iter().map(|text| format!("! {text}"));
     let notes = curve.iter().flat_map(|curve| curve.base.notes.iter().cloned());
     [app.keymap.spelled(&app.model.status().1)].into_iter().chain(warnings).chain(notes).collect()
 }

@@ -75,8 +75,8 @@ pub fn line(app: &App, room: usize) -> Line<'static> {
     if matches!(node.kind, NodeKind::Stale(_)) || !model.is_on_curve(node) {
         parts.push(vec![Span::styled("for other values", theme.error())]);
     }
-    if node.is_apart() {
-        parts.push(vec![Span::styled("apart, last contact", theme.strong())]);
+    if let Some(event) = node.parted_by() {
+        parts.push(vec![Span::styled(format!("apart, {event}"), theme.strong())]);
     }
     parts.push(shown(&length, scale.length(state.approach), 4));
     parts.push(shown(&force, scale.force(state.force), 4));
@@ -151,11 +151,13 @@ fn shown(theme: Theme, node: &Node, quantity: Quantity, x: f64, digits: usize) -
 fn apart(theme: Theme, keymap: &Keymap, node: &Node) -> Vec<Line<'static>> {
     let state = shown_state(node);
     let shown = |quantity, x| shown(theme, node, quantity, x, 5);
+    let event = node.parted_by().unwrap_or_default();
+    let line = |name: &str, quantity, x| Line::from(pair(theme, name, &shown(quantity, x)).to_vec());
     vec![
         Line::styled(" the bodies are apart", theme.strong()),
-        Line::from(pair(theme, " last contact δ ", &shown(Quantity::Length, state.approach)).to_vec()),
-        Line::from(pair(theme, "              P ", &shown(Quantity::Force, state.force)).to_vec()),
-        Line::from(pair(theme, "              s ", &shown(Quantity::Length, state.contact_radius)).to_vec()),
+        line(&format!(" {event:<12} δ "), Quantity::Length, state.approach),
+        line("              P ", Quantity::Force, state.force),
+        line("              s ", Quantity::Length, state.contact_radius),
         Line::raw(format!(
             " {} goes back, {} starts again",
             keymap.first(Id::Undo),

@@ -154,13 +154,13 @@ fn sums(model: &Model, log: &Log, room: usize) -> String {
         let text = if lost == 0.0 { "0".to_owned() } else { loss(lost) };
         format!("{text}{}", if unbounded { "+" } else { "" })
     };
-    let (lost, unbounded) = log.lost();
+    let (so_far, unbounded) = log.lost();
     let totals = &path.totals;
     let all = totals.dissipated.unwrap_or(totals.dissipated_before_last_contact);
     let unit = units.unit(Quantity::Energy).map_or_else(String::new, |unit| format!(" {unit}"));
     // What is lost off the path is no part of its total.
     let of = if log.has_left_path() { ", on the path" } else { " of" };
-    let of = format!("{}{of} {}{unit}", energy(lost, unbounded), energy(all, totals.dissipated.is_none()));
+    let of = format!("{}{of} {}{unit}", energy(so_far, unbounded), energy(all, totals.dissipated.is_none()));
     let passed = match log.passed_by() {
         (0.0, false) => String::new(),
         (lost, unbounded) => format!(", {} passed by", energy(lost, unbounded)),
@@ -180,15 +180,20 @@ fn sums(model: &Model, log: &Log, room: usize) -> String {
     let at_rate = model.pull_peak().map(|peak| format!("at the rate {}; ", force(peak))).unwrap_or_default();
     // What else would be lost is not known where a path stops before its end.
     let ends = if path.has_reached_its_end { "" } else { ", ends early" };
+    // Where an edge is pinned, jumps are not all that a loop loses.
+    let band = totals.dead_band.map(|band| format!(", dead band {}", energy(band.dissipated, false)));
+    let lost = if band.is_some() { "lost in jumps" } else { "lost" };
+    let band = band.unwrap_or_default();
     [
-        format!("{at_rate}{slow}{pull}lost up to here {of}{passed}{ends}"),
-        format!("{at_rate}{slow}{pull}lost up to here {of}{ends}"),
-        format!("{slow}{pull}lost up to here {of}{passed}{ends}"),
-        format!("{slow}{pull}lost up to here {of}{ends}"),
-        format!("{short}{pull}lost {of}{ends}"),
-        format!("{slow}lost up to here {of}{ends}"),
-        format!("{short}lost {of}{ends}"),
-        format!("{short}lost {of}"),
+        format!("{at_rate}{slow}{pull}{lost} up to here {of}{band}{passed}{ends}"),
+        format!("{at_rate}{slow}{pull}{lost} up to here {of}{band}{ends}"),
+        format!("{slow}{pull}{lost} up to here {of}{band}{passed}{ends}"),
+        format!("{slow}{pull}{lost} up to here {of}{band}{ends}"),
+        format!("{short}{pull}{lost} {of}{band}{ends}"),
+        format!("{slow}{lost} up to here {of}{band}{ends}"),
+        format!("{short}{lost} {of}{band}{ends}"),
+        format!("{short}{lost} {of}{band}"),
+        format!("{short}{lost} {of}"),
     ]
     .into_iter()
     .find(|text| text.chars().count() <= room)

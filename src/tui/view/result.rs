@@ -135,10 +135,15 @@ fn lines(theme: Theme, model: &Model, path: &PathReport, room: usize) -> Vec<Lin
         lines.push(head(" last contact", pair(theme, "  event ", &event.number.to_string())));
     }
     let lost = totals.dissipated.unwrap_or(totals.dissipated_before_last_contact);
-    let lost = with_unit(&model.preset.units, Quantity::Energy, lost, theme.ascii, loss);
+    let energy = |lost| with_unit(&model.preset.units, Quantity::Energy, lost, theme.ascii, loss);
     let fall = if totals.dissipated.is_none() { "+" } else { "" };
     lines.push(head(" ", pair(theme, "snaps ", &format!("{}", snaps(path)))));
-    lines.push(head(" ", pair(theme, "lost ", &format!("{lost}{fall}"))));
+    let (name, band) = match totals.dead_band {
+        Some(band) => ("in jumps ", Some(energy(band.dissipated))),
+        None => ("lost ", None),
+    };
+    lines.push(head(" ", pair(theme, name, &format!("{}{fall}", energy(lost)))));
+    lines.extend(band.map(|band| head(" ", pair(theme, "dead band ", &band))));
     lines
 }
 
