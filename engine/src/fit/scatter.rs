@@ -29,8 +29,9 @@ const FEWEST_APART: usize = 20;
 const OUTER: usize = 2;
 /// Rows apart that scatter by less than this share of σ are rounding, in which there is always some order.
 const ROUNDING: f64 = 0.1;
-/// The correlation of neighbours in white noise lies beyond this many times 1/√n once in a thousand times.
-const CORRELATED: f64 = 3.1;
+/// A correlation of neighbours beyond this many times 1/√n counts: one in 40 series of white noise has such a one, which makes its
+/// errors somewhat larger, and a correlation that is not seen makes them too small.
+const CORRELATED: f64 = 2.0;
 
 /// One row, with its residual in σ.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -74,10 +75,12 @@ impl Correlation {
     /// By how much the variance of second differences is off, as a share, where the decay is found from this many rows:
     /// var ρ = (1 − ρ²)/n; M. S. Bartlett, J. R. Stat. Soc. Suppl. 8, 27 (1946). Returns the variance of that share.
     fn of_few(&self, rows: usize) -> f64 {
-        if self.share <= 0.0 {
+        if rows == 0 {
             return 0.0;
         }
-        let slope = self.share * (8.0 - 4.0 * self.decay) / 6.0;
+        // Where none is seen there may still be one that is too small to be seen.
+        let share = if self.share > 0.0 { self.share } else { 1.0 };
+        let slope = share * (8.0 - 4.0 * self.decay) / 6.0;
         slope * slope * (1.0 - self.decay * self.decay) / rows as f64 / self.of_differences().powi(2)
     }
 
@@ -325,14 +328,15 @@ mod tests {
     use crate::fit::tests::Normal;
 
     #[test]
-    fn a_correlation_is_found_and_white_noise_has_none() {
+    fn a_correlation_is_found_and_white_noise_seldom_has_one() {
         let mut found = 0;
         for seed in 0..200 {
             let mut normal = Normal::new(seed);
             let white: Vec<f64> = (0..100).map(|_| normal.next()).collect();
             found += usize::from(correlation(&[detrended(&white)]).share > 0.0);
         }
-        assert!(found <= 2, "{found} of 200");
+        // Beyond two deviations on one side.
+        assert!(found <= 9, "{found} of 200");
         let mut mean = 0.0;
         for seed in 0..50 {
             let mut normal = Normal::new(seed);

@@ -22,6 +22,7 @@ use crate::text::counted;
 use crate::units::Quantity;
 use crate::units::number::{said, short};
 use nalgebra::DVector;
+use std::f64::consts::FRAC_2_PI;
 
 /// The share of right fits that each test flags.
 const FALSE_ALARM: f64 = 1e-3;
@@ -32,7 +33,7 @@ const ROWS: usize = 5;
 const BINS: usize = 12;
 /// Runs are counted in at least this many rows, and fewer runs by this many of their deviations are not chance.
 const RUNS_OF: usize = 20;
-const FEWER_RUNS: f64 = -3.3;
+const FEWER_RUNS: f64 = 3.3;
 /// So many outliers side by side, all on one side of the curve, are not chance, even where one row in five is one.
 const MISSED: usize = 8;
 /// A mean must keep at least this share of its variance: a bin that decides a value alone says nothing.
@@ -213,13 +214,15 @@ fn bin(evidence: Evidence, rows: &[ScatterRow], part: usize) -> Option<Bin> {
 }
 
 /// Residuals that keep their sign.
-fn of_runs(Evidence { problem, solved, .. }: Evidence) -> Vec<Reason> {
+fn of_runs(Evidence { problem, solved, scatter, .. }: Evidence) -> Vec<Reason> {
     let mut reasons = Vec::new();
+    // A correlation ρ makes 2/π ρ fewer runs a row, and rows apart show it only to 1/√n.
+    let unseen = if scatter.apart > 0 { ONE_IN_THOUSAND / (scatter.apart as f64).sqrt() } else { 0.0 };
     for branch in 0..problem.branches() {
         let rows = problem.rows(solved, branch, false, 0);
         let of: Vec<f64> = rows.iter().map(|row| row.residual).collect();
         let found = if of.len() < RUNS_OF { 0.0 } else { runs(&of) };
-        if found > FEWER_RUNS {
+        if found > -hypot(FEWER_RUNS, FRAC_2_PI * unseen * (of.len() as f64).sqrt()) {
             continue;
         }
         let name = rows.first().map_or("", |row| problem.data[row.index].segment.name());
