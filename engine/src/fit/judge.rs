@@ -195,7 +195,7 @@ fn unlikely(problem: &FitProblem, solved: &SolvedFit, preset: &Preset) -> Vec<Re
     };
     let radius = preset.gap.radius_of_curvature();
     if let (Some(radius), Some(paths)) = (radius, problem.paths(u)) {
-        let (widest, deepest) = extent(problem, u, &paths);
+        let [widest, deepest] = extent(problem, u, &paths);
         if widest > LARGEST * radius {
             unit(widest / radius, format!("the contact radius reaches {} R", short(widest / radius, 3)));
         }
@@ -282,7 +282,7 @@ pub(super) fn doubts(
 /// A sentence on a contact that is wide for its ball, in SI.
 fn wide(problem: &FitProblem, u: &[f64]) -> Option<String> {
     let radius = problem.preset.gap.radius_of_curvature()?;
-    let (widest, _) = extent(problem, u, &problem.paths(u)?);
+    let [widest, _] = extent(problem, u, &problem.paths(u)?);
     let is_si = matches!(problem.preset.units, UnitSystem::Si(_));
     (is_si && (WIDE..LARGEST).contains(&(widest / radius))).then(|| {
         format!("the contact radius reaches {} R: check R and the unit of x", short(widest / radius, 3))
@@ -306,7 +306,7 @@ fn unknown(problem: &FitProblem, fitted: &[Fitted]) -> Option<String> {
 }
 
 /// The largest contact radius and approach of the feet.
-fn extent(problem: &FitProblem, u: &[f64], paths: &Paths) -> (f64, f64) {
+pub(super) fn extent(problem: &FitProblem, u: &[f64], paths: &Paths) -> [f64; 2] {
     let feet = problem.feet(paths, &problem.instrument_at(u)).unwrap_or_default();
     let (mut widest, mut deepest) = (0.0, f64::NEG_INFINITY);
     for (datum, foot) in problem.data.iter().zip(&feet) {
@@ -317,5 +317,5 @@ fn extent(problem: &FitProblem, u: &[f64], paths: &Paths) -> (f64, f64) {
             deepest = f64::max(deepest, path.approach(along).unwrap_or(deepest));
         }
     }
-    (widest, deepest)
+    [widest, deepest]
 }

@@ -1,18 +1,24 @@
 //! The preset that a fit leaves: its own, with what was found.
 
-use super::problem::{ADHESION, FitProblem, FreeParameter, Target};
+use super::problem::{ADHESION, FitProblem, FreeParameter, START, Target};
 use super::uncertain::{uncertain, written};
+use crate::elementary::{log10, pow};
 use crate::measured::{Instrument, Segment};
 use crate::preset::data::{BASELINE, OFFSET, TILT};
 use crate::preset::{Preset, Value, edge};
+use crate::problem::Start;
 use crate::units::Quantity;
 use crate::units::number::said;
 
-/// `preset` with the values of `found`; its path stays its own.
+/// A path that begins this share of its start within the points reaches them.
+const REACHED: f64 = 0.01;
+
+/// `preset` with the values of `found`; its path stays its own, unless it begins within the points.
 pub(super) fn laid(
     preset: &Preset,
     problem: &FitProblem,
     (found, closing, instrument): (&Preset, Option<f64>, &Instrument),
+    widest: f64,
     notes: &mut Vec<String>,
 ) -> Preset {
     let mut laid = preset.clone();
@@ -57,5 +63,18 @@ pub(super) fn laid(
             notes.push(format!("{key} could not be set in the preset: {invalid}"));
         }
     }
+    let is_within =
+        matches!(laid.path.start, Start::ContactRadius(start) if widest > start * (1.0 + REACHED));
+    let is_fitted = all().any(|parameter| parameter.key() == START);
+    if is_within && !is_fitted && laid.set(START, Value::Number(rounded_up(widest))).is_ok() {
+        let start = said(&preset.units, Quantity::Length, rounded_up(widest));
+        notes.push(format!("{START} is {start} in the fitted preset: its curve reaches the first points"));
+    }
     laid
+}
+
+/// A positive number with three digits, not below `x`.
+fn rounded_up(x: f64) -> f64 {
+    let digit = pow(10.0, log10(x).floor() - 2.0);
+    (x / digit).ceil() * digit
 }

@@ -4,7 +4,7 @@ use super::bias::of_bias;
 use super::determined::{Determined, determined};
 use super::fitted::{Fitted, too_small, unmoved, values};
 use super::intervals::intervals;
-use super::judge::{Evidence, doubts, of_hidden, of_sparse, of_spring, of_unclear, reasons, unseen};
+use super::judge::{Evidence, doubts, extent, of_hidden, of_sparse, of_spring, of_unclear, reasons, unseen};
 use super::laid::laid;
 use super::least_squares::Ending;
 use super::options::{FitError, Options};
@@ -88,6 +88,17 @@ impl<'a> Posed<'a> {
             problem = problem.without_loading(why, &mut notes)?;
             (starts, solved) = found(&mut problem)?;
         }
+        if unpinned(&problem, &solved).is_some() {
+            // A fit may have moved the radius to where no row tells it.
+            let mut u = solved.minimum.parameters.clone();
+            problem.begun(&mut u);
+            let mut other = problem.clone();
+            let again =
+                last(&mut other, &u, options.robust, least, &ProgressPart::new(progress, [0.8, 0.85]));
+            if let Some(again) = again.ok().filter(|again| again.scale < solved.scale) {
+                (problem, solved) = (other, again);
+            }
+        }
         if let Some(j) = unpinned(&problem, &solved) {
             let mut u = solved.minimum.parameters;
             problem = problem.holding(j, u.remove(j)).ok_or(FitError::NoStart)?;
@@ -167,7 +178,8 @@ impl<'a> Posed<'a> {
         let warnings = warned(evidence, (preset, branches), &reasons, &mut fitted);
         let closing = problem.preset_at(u, Segment::Approach).map(|preset| preset.material.work_of_adhesion);
         let instrument = problem.instrument_at(u).turned(problem.turned);
-        let fitted_preset = laid(preset, &problem, (&found, closing, &instrument), &mut notes);
+        let widest = problem.paths(u).map_or(0.0, |paths| extent(&problem, u, &paths)[0]);
+        let fitted_preset = laid(preset, &problem, (&found, closing, &instrument), widest, &mut notes);
         let left = real.len().saturating_sub(problem.taken()).max(1) as f64;
         Ok(Fit {
             verdict,

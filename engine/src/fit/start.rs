@@ -21,6 +21,8 @@ use nalgebra::DVector;
 /// Values of E*, and the decades they span.
 const MODULI: usize = 31;
 const DECADES: f64 = 5.0;
+/// What a closing edge gains, over the first guess.
+const CLOSINGS: [f64; 3] = [1.0, 0.4, 0.1];
 /// Factors at which another free key is tried.
 const FACTORS: [f64; 5] = [1.0, 0.577_350_269_189_625_8, 1.732_050_807_568_877_2, 1.0 / 3.0, 3.0];
 /// The most candidates.
@@ -327,10 +329,19 @@ impl FitProblem {
             return list;
         }
         let modulus = self.index(|t| *t == Target::Key("material.effective_modulus".to_owned()));
-        let others = self.index(
-            |t| matches!(t, Target::Key(key) if key != ADHESION && key != "material.effective_modulus"),
-        );
+        // Where an edge is pinned follows from the other values.
+        let is_other = |key: &str| key != ADHESION && key != "material.effective_modulus" && key != START;
+        let others = self.index(|t| matches!(t, Target::Key(key) if is_other(key)));
+        let closing = self.index(|t| *t == Target::Adhesion(Segment::Approach));
         let mut grid = vec![own];
+        for j in closing {
+            let with = |factor: f64| {
+                let mut u = grid[0].clone();
+                u[j] += ln(factor);
+                u
+            };
+            grid = CLOSINGS.map(with).to_vec();
+        }
         for j in others {
             if grid.len() * FACTORS.len() > MOST / if modulus.is_empty() { 1 } else { MODULI } {
                 break;
