@@ -13,7 +13,7 @@ use pulloff_engine::measured::Abscissa;
 use pulloff_engine::preset::{Preset, Value, data};
 use pulloff_engine::progress::{Progress, Stopped};
 use pulloff_engine::report::number::short;
-use pulloff_engine::text::greek;
+use pulloff_engine::text::{counted, greek};
 use std::cell::{Cell, RefCell};
 use std::sync::Arc;
 
@@ -149,7 +149,10 @@ fn told(fit: &Fit) -> String {
     let holds = (fit.verdict == Verdict::Describes).then(|| fit.verdict.sentence());
     let reasons = fit.reasons.iter().map(|reason| &*reason.sentence);
     let reasons = holds.into_iter().chain(reasons).chain(fit.warnings.iter().map(String::as_str));
-    let begins = format!("{ended}: χ² {} ({}: the report)", short(fit.chi_squared, 3), Id::About.named());
+    let outliers =
+        if fit.outliers > 0 { format!(", {}", counted(fit.outliers, "outlier")) } else { String::new() };
+    let begins =
+        format!("{ended}: χ² {}{outliers} ({}: the report)", short(fit.chi_squared, 3), Id::About.named());
     let together = fit.known_together();
     let parts: Vec<&str> =
         std::iter::once(&*begins).chain(reasons).chain(together.iter().map(String::as_str)).collect();

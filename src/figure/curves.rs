@@ -167,6 +167,11 @@ fn pins(subject: &Subject<'_>, view: View, figure: &mut Figure) -> Vec<(f64, f64
         let scale = pinned_scale(subject, pin);
         let points: Vec<(f64, f64)> =
             pin.curve.points.iter().map(|point| scale.place(view, place(point))).collect();
+        figure.notes.extend(
+            scale
+                .unlike(&pin.curve, subject.axes)
+                .map(|units| format!("pin {} in the present {units}", letter(pin.number))),
+        );
         let name = pin.name(subject.preset);
         let parts = pieces(&pin.curve.points, &points).into_iter();
         figure.lines.extend(parts.map(|part| {

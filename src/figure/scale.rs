@@ -57,6 +57,16 @@ impl<'a> Scale<'a> {
         Self { compliance: Scale::of(curve, axes).compliance, ..self }
     }
 
+    /// The divisors of the axes that are not those of another curve's own values, in words.
+    pub fn unlike(&self, curve: &CurveData, axes: Axes) -> Option<String> {
+        let own = Scale::of(curve, axes);
+        let differ =
+            |a: Option<f64>, b: Option<f64>| a.zip(b).is_some_and(|(a, b)| (a - b).abs() > 1e-12 * a.abs());
+        let names = [("Pc", differ(self.force, own.force)), ("λ", differ(self.wave, own.wave))];
+        let names: Vec<&str> = names.iter().filter(|(_, differs)| *differs).map(|(name, _)| *name).collect();
+        (!names.is_empty()).then(|| names.join(" and "))
+    }
+
     /// No divisors.
     pub fn raw(units: &'a UnitSystem) -> Self {
         Self { force: None, wave: None, curvature: None, modulus: None, compliance: 0.0, units }

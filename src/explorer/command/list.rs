@@ -63,7 +63,8 @@ macro_rules! each_command {
         FineMore "fine-more" "." "a bit more" parameter InOrder Selected("KEY=VALUE") "increase it by its third digit"
             { run: |model| turn(model, Id::FineMore, None) }
         Free "free" "*" "free" parameter InOrder Selected("data.free=KEY,...")
-            "let a fit change the selected value, or hold it" { run: mark }
+            "let a fit change the selected value, or hold it; or all keys that it may change"
+            { run: mark, takes: takes("KEY,...", |rest| rest.assigned("keys", data::FREE)) }
         Fit "fit" "F" "fit" always Nothing Yes "fit the free values to the measured curve; Esc takes the best so far"
             { words: "regression report result", run: fit }
         Edit "edit" "Enter =" "type" always Nothing Selected("KEY=VALUE")
