@@ -71,7 +71,6 @@ impl Report for FitReport {
 /// The arguments of a fit, under the names that Python gives them.
 #[derive(FromPyObject)]
 #[pyo3(from_item_all)]
-#[expect(clippy::struct_excessive_bools, reason = "each is an argument of its own")]
 pub struct Wanted {
     columns: Option<String>,
     segment: Option<String>,

@@ -97,7 +97,7 @@ pub(super) fn typed(preset: &Preset, flag: &str, key: &str, text: &str) -> Resul
     // The row belongs to another key, which the message must not name.
     let words = |invalid: pulloff_engine::preset::Invalid| {
         let text = invalid.to_string();
-        wrong(&text.strip_prefix(&*row.key).map_or(&*text, |rest| rest.trim_start_matches([':', ' '])))
+        wrong(&text.strip_prefix(&*row.key).map_or(&*text, |rest| rest.trim_start_matches([':', '=', ' '])))
     };
     preset.number(&row, text).map_err(words)
 }

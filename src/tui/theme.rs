@@ -287,7 +287,6 @@ impl Theme {
 
 fn transliterate(c: char) -> &'static str {
     match c {
-        '─' => "-",
         '│' => "|",
         // Corners and crossings of frames.
         '┌'..='╋' => "+",
@@ -309,7 +308,7 @@ fn transliterate(c: char) -> &'static str {
         'χ' => "chi",
         'σ' => "sigma",
         '○' => "O",
-        '–' | '—' | '−' => "-",
+        '–' | '—' | '−' | '─' => "-",
         '√' => "sqrt",
         'π' => "pi",
         _ => "?",

@@ -13,6 +13,7 @@ use thiserror::Error;
 
 /// What is asked of a fit.
 #[derive(Debug, Clone, PartialEq)]
+#[expect(clippy::struct_excessive_bools, reason = "each is a switch of its own")]
 pub struct Options {
     /// The free keys, dotted or by their labels.
     pub free: Vec<String>,

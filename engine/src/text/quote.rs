@@ -38,7 +38,7 @@ pub fn sanitize(text: &str, max: usize) -> String {
 }
 
 /// A count with its noun: 1 row, 2 rows.
-pub fn counted<N: fmt::Display + PartialEq + From<u8>>(count: N, noun: &str) -> String {
+pub fn counted<N: fmt::Display + PartialEq + From<u8> + Copy>(count: N, noun: &str) -> String {
     if count == N::from(1) { format!("1 {noun}") } else { format!("{count} {noun}s") }
 }
 

@@ -139,9 +139,9 @@ fn of_missed(Evidence { problem, solved, .. }: Evidence) -> Option<Reason> {
     let of_branch = |branch: usize| {
         let rows = problem.in_order(solved, branch, false, 0);
         let limit = outlier(&rows);
-        let side = |row: &ScatterRow| if row.residual.abs() > limit { row.residual.signum() } else { 0.0 };
+        let side = |row: &ScatterRow| (row.residual.abs() > limit).then_some(row.residual > 0.0);
         let runs: Vec<&[ScatterRow]> = rows.chunk_by(|a, b| side(a) == side(b)).collect();
-        runs.into_iter().filter(|run| side(&run[0]) != 0.0).max_by_key(|run| run.len()).map(<[_]>::to_vec)
+        runs.into_iter().filter(|run| side(&run[0]).is_some()).max_by_key(|run| run.len()).map(<[_]>::to_vec)
     };
     let missed = (0..problem.branches()).filter_map(of_branch).max_by_key(Vec::len)?;
     let first = problem.data[missed.first()?.index];

@@ -16,6 +16,8 @@ const ROUNDS: usize = 40;
 const TIMES: usize = 5;
 /// A change of a value, or of its logarithm where it is positive, that counts as none.
 const STILL: f64 = 1e-9;
+/// No value changes by more than this, or its logarithm, with a spring that changes by a tenth.
+const RUN_AWAY: f64 = 2.0;
 /// The same of a logarithm in words, which have a tenth of a per cent.
 const UNSEEN: f64 = 5e-4;
 
@@ -50,6 +52,8 @@ pub(in crate::fit) fn of_spring(
         let found = ends.by_ref().take(TIMES).find(|(_, rests)| *rests == Some(true)).map(|(u, _)| u);
         // Another spring moves the points: values that stay where they were have not been fitted to it.
         let found = found.filter(|u| problem.abscissa != Abscissa::Position || apart(u, &own) > STILL);
+        // And values that a tenth of k multiplies have run away.
+        let found = found.filter(|u| apart(u, &own) < RUN_AWAY);
         let words = match found {
             None => {
                 plays |= problem.abscissa == Abscissa::Position;

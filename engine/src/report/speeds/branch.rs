@@ -120,6 +120,9 @@ struct PossibleContact {
     holds: bool,
 }
 
+/// The least way of the jumps up to a candidate, and the row and its candidate that it comes from.
+type WayTo = (f64, Option<(usize, usize)>);
+
 /// The largest step between two contacts that may be noise.
 fn noise_of(a: &PossibleContact, b: &PossibleContact) -> f64 {
     /// In standard deviations.
@@ -165,8 +168,8 @@ fn steadiest(rows: &[Vec<PossibleContact>]) -> Vec<(usize, usize)> {
     const MOST: usize = 20;
     // To leave all rows out would cost one jump. One that stays is not avoided by that at any price.
     let price = least_distance(rows) / rows.len() as f64;
-    // The least way of the jumps up to each candidate of a row, and the row and its candidate that it comes from.
-    let mut ways: Vec<Vec<(f64, Option<(usize, usize)>)>> = Vec::new();
+    // To each candidate of a row.
+    let mut ways: Vec<Vec<WayTo>> = Vec::new();
     for (i, of_row) in rows.iter().enumerate() {
         let any_holds = of_row.iter().any(|candidate| candidate.holds);
         let way = |to: usize| {
@@ -190,9 +193,7 @@ fn steadiest(rows: &[Vec<PossibleContact>]) -> Vec<(usize, usize)> {
         let ways_of_row = (0..of_row.len()).map(way).collect();
         ways.push(ways_of_row);
     }
-    let least = |ways: &Vec<(f64, Option<(usize, usize)>)>| {
-        (0..ways.len()).rev().min_by(|a, b| ways[*a].0.total_cmp(&ways[*b].0))
-    };
+    let least = |ways: &Vec<WayTo>| (0..ways.len()).rev().min_by(|a, b| ways[*a].0.total_cmp(&ways[*b].0));
     let last = ways.last().and_then(least).map(|at| (ways.len() - 1, at));
     let mut taken: Vec<_> = std::iter::successors(last, |(row, at)| ways[*row][*at].1).collect();
     taken.reverse();
