@@ -51,6 +51,19 @@ fn a_dead_load_falls_without_end_or_is_borne() {
     let force = ["--control", "force", "--rate", "1e-3"];
     let found = document(&[&WAVY[..], &force].concat());
     assert_eq!(found["runs"][0]["dissipated"], Value::Null);
+    // It pulls most at the last contact, whose approach has no bound, whatever the integrator's last step is.
+    let of = |exponent: &str| {
+        let set = format!("edge.exponent={exponent}");
+        let sphere =
+            ["fig-3-jkr", "--set", "basis.kind=exact", "--set", &set, "--set", "edge.reference_speed=1"];
+        document(&[&sphere[..], &force].concat())["runs"][0].clone()
+    };
+    for run in ["0.05", "0.06", "0.5"].map(of) {
+        let peak = &run["peak"];
+        assert_eq!((&peak["contact_radius"], &peak["approach"]), (&Value::from(0.0), &Value::Null), "{run}");
+        assert_eq!(peak["time"], run["last_contact"]["time"]);
+        assert_eq!(peak["force"], run["last_contact"]["control"]);
+    }
     let loads = ["--hold-force=-0.02", "--hold-force=-0.03"];
     let found = document(&[&WAVY[..], &loads].concat());
     assert_eq!(found["runs"], Value::Array(Vec::new()));

@@ -10,6 +10,7 @@ use pulloff_engine::progress::Unwatched;
 use pulloff_engine::sweep::Spec;
 use pulloff_engine::theory::guduru::Guduru;
 use pulloff_engine::theory::kesari_lew::KesariLew;
+use pulloff_engine::{Extent, PathReport};
 
 #[test]
 fn the_loop_is_measured() {
@@ -39,6 +40,26 @@ values = [0.0, 1e-5, 1e-4, 0.0039788735772973835]
     assert!(share[0] < 0.95 && (share[2] - 1.0).abs() < 1e-12 && (share[3] - 1.0).abs() < 1e-12, "{share:?}");
     // Under a dead load the pull-off has no bound.
     assert!(home.columns("r.csv", &["cycle_loss_force"])[0][1..].iter().all(String::is_empty));
+}
+
+#[test]
+fn a_loop_with_a_dead_band_loses_its_work() {
+    let home = Sweeps::new();
+    let gains = [0.002, 0.004];
+    home.file(
+        "s.toml",
+        "preset = \"fig-3-jkr\"\nset = [\"basis.kind=exact\"]\nquantities = [\"cycle_loss\"]\n[[axis]]\n\
+         key = \"material.closing_work_of_adhesion\"\nvalues = [0.002, 0.004]\n",
+    );
+    home.sweep("s.toml", "r.csv", &[]);
+    for (gain, loss) in gains.into_iter().zip(home.numbers("r.csv", "cycle_loss")) {
+        let store = Store::at(std::path::Path::new("/nowhere"), &[]);
+        let set = ["basis.kind=exact".to_owned(), format!("gamma_a={gain}")];
+        let preset = store.load(&store.resolve("fig-3-jkr").unwrap(), &set).unwrap().preset;
+        let whole = PathReport::cycle(&preset, None, Extent::default(), &Unwatched).unwrap().totals;
+        let work = whole.work_of_loading.unwrap() + whole.work_of_unloading.unwrap();
+        assert!((loss / work - 1.0).abs() < 1e-9 && loss > 2.0 * whole.dissipated.unwrap(), "{loss} {work}");
+    }
 }
 
 /// Rows of many small waves; an assignment in `set` or an axis `start` determines where their curves begin.

@@ -29,9 +29,9 @@ const FEWEST_APART: usize = 20;
 const OUTER: usize = 2;
 /// Rows apart that scatter by less than this share of σ are rounding, in which there is always some order.
 const ROUNDING: f64 = 0.1;
-/// A correlation of neighbours beyond this many times 1/√n counts: one in 40 series of white noise has such a one, which makes its
+/// A correlation of neighbours beyond this many times 1/√n counts: one in six series of white noise has such a one, which makes its
 /// errors somewhat larger, and a correlation that is not seen makes them too small.
-const CORRELATED: f64 = 2.0;
+const CORRELATED: f64 = 1.0;
 
 /// One row, with its residual in σ.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -335,8 +335,8 @@ mod tests {
             let white: Vec<f64> = (0..100).map(|_| normal.next()).collect();
             found += usize::from(correlation(&[detrended(&white)]).share > 0.0);
         }
-        // Beyond two deviations on one side.
-        assert!(found <= 9, "{found} of 200");
+        // Beyond one deviation on one side.
+        assert!(found <= 45, "{found} of 200");
         let mut mean = 0.0;
         for seed in 0..50 {
             let mut normal = Normal::new(seed);

@@ -51,6 +51,60 @@ fn what_is_held_is_neither_a_free_part_nor_a_misfit() {
 }
 
 #[test]
+fn a_weak_correlation_of_the_noise_is_no_misfit() {
+    let body = Body { state: &sphere(1.0, 0.02, 1.0), compliance: 0.0, most: 1.1 };
+    let rows = body.samples(600);
+    let mut refused = 0;
+    for seed in 0..16 {
+        let (mut normal, mut last) = (Normal::new(seed), 0.0);
+        let mut points = rows.clone();
+        for force in &mut points.force {
+            last = 0.2 * last + normal.next();
+            *force += 5e-4 * last;
+        }
+        let fit = found(&points, &[E, W, OFFSET], "");
+        refused += usize::from(fit.verdict != Verdict::Describes);
+        assert!(off(&fit, &[1.0, 0.02, 0.0]).iter().all(|z| z.abs() < 4.0), "{seed}: {:?}", fit.parameters);
+    }
+    assert!(refused <= 2, "{refused}");
+}
+
+#[test]
+fn outliers_side_by_side_are_missed_and_single_ones_are_not() {
+    let body = Body { state: &sphere(1.0, 0.02, 1.0), compliance: 0.0, most: 1.1 };
+    let with = |off: &dyn Fn(usize) -> bool| {
+        let (mut points, mut normal) = (body.samples(400), Normal::new(5));
+        for (i, force) in points.force.iter_mut().enumerate() {
+            *force += 5e-4 * normal.next() + if off(i) { 0.02 } else { 0.0 };
+        }
+        found(&points, &[E, W, OFFSET], "")
+    };
+    let single = with(&|i| i % 20 == 0);
+    assert_eq!(single.verdict, Verdict::Describes, "{:?}", single.reasons);
+    let together = with(&|i| (230..242).contains(&i));
+    assert_eq!(together.verdict, Verdict::DoesNotDescribe);
+    assert!(together.reasons.iter().any(|reason| reason.kind == "missed"), "{:?}", together.reasons);
+}
+
+#[test]
+fn the_last_row_of_a_retraction_may_be_apart() {
+    let body = Body { state: &sphere(1.0, 0.02, 1.0), compliance: 0.0, most: 1.1 };
+    let (mut points, mut normal) = (body.samples(400), Normal::new(8));
+    points.force.iter_mut().for_each(|force| *force += 5e-4 * normal.next());
+    // Up to the first row behind the jump of the retraction.
+    let jump = (201..400).find(|i| points.force[*i] - points.force[i - 1] > 0.01).unwrap();
+    let cut = Points {
+        x: points.x[..=jump].to_vec(),
+        force: points.force[..=jump].to_vec(),
+        segments: points.segments.as_ref().map(|of| of[..=jump].to_vec()),
+        ..points.clone()
+    };
+    let fit = found(&cut, &[E, W, OFFSET], "");
+    assert_eq!((fit.verdict, fit.outliers), (Verdict::Describes, 0), "{:?}", fit.reasons);
+    assert_eq!(fit.residuals.last().map(|row| row.datum.free), Some(true));
+}
+
+#[test]
 fn a_curve_that_bends_within_the_noise_of_the_radius_has_no_bias() {
     const SEEDS: u64 = 8;
     let state = sphere(1.0, 0.02, 1.0);

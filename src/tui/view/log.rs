@@ -181,7 +181,7 @@ fn sums(model: &Model, log: &Log, room: usize) -> String {
     // What else would be lost is not known where a path stops before its end.
     let ends = if path.has_reached_its_end { "" } else { ", ends early" };
     // Where an edge is pinned, jumps are not all that a loop loses.
-    let band = totals.dead_band.map(|band| format!(", dead band {}", energy(band.dissipated, false)));
+    let band = totals.dead_band.map(|band| format!(" + dead band {}", energy(band.dissipated, false)));
     let lost = if band.is_some() { "lost in jumps" } else { "lost" };
     let band = band.unwrap_or_default();
     [
@@ -193,6 +193,7 @@ fn sums(model: &Model, log: &Log, room: usize) -> String {
         format!("{slow}{lost} up to here {of}{band}{ends}"),
         format!("{short}{lost} {of}{band}{ends}"),
         format!("{short}{lost} {of}{band}"),
+        format!("{short}lost {of}{band}"),
         format!("{short}{lost} {of}"),
     ]
     .into_iter()

@@ -252,6 +252,17 @@ fn every_screen_is_ascii_in_an_ascii_terminal() {
             }
         }
     }
+    // Walls that panels share leave their titles.
+    let mut screen = Screen::new("wavy-sphere");
+    let titles = |screen: &Screen, size: (u16, u16)| {
+        let text = screen.text(size.0, size.1).replace(['δ', 'λ'], "?");
+        ["P/Pc over", "Here, step 0", "Result", "Log"].map(|title| text.matches(title).count())
+    };
+    let sizes = [(80, 24), (100, 30), (120, 40), (200, 60)];
+    let unicode = sizes.map(|size| titles(&screen, size));
+    screen.app.theme = plain;
+    assert_eq!(sizes.map(|size| titles(&screen, size)), unicode);
+    assert!(unicode[2].iter().all(|count| *count > 0), "{unicode:?}");
 }
 
 #[test]

@@ -517,3 +517,35 @@ fn the_axes_of_a_map_take_ranges() {
         assert!(text.contains(why), "{axis}: {text}");
     }
 }
+
+#[test]
+fn a_loop_says_what_it_loses_in_the_dead_band() {
+    let mut screen = Screen::new("fig-3-jkr");
+    screen.keys(":set basis.kind=exact gamma_a=0.002 begin=apart\r");
+    let report = screen.app.model.cycle().unwrap().report().unwrap().clone();
+    let band = report.totals.dead_band.unwrap().dissipated;
+    let shown = pulloff_engine::report::number::loss(band);
+    for size in [(80, 24), (120, 40)] {
+        let text = screen.text(size.0, size.1);
+        assert!(text.contains(&format!("+ dead band {shown}")), "{shown} {text}");
+        assert!(
+            size.0 < 120 || text.contains(" in jumps ") && text.contains(&format!(" dead band {shown}")),
+            "{text}"
+        );
+    }
+}
+
+#[test]
+fn a_walk_from_apart_is_on_the_path_whatever_the_basis() {
+    let mut screen = Screen::new("fig-9-si");
+    screen.keys(":set begin=apart\r");
+    let touch = screen.app.model.path_events()[0].after.clone().unwrap();
+    let node = screen.app.model.history.current().unwrap();
+    let state = node.state.in_units(node.setting.units());
+    assert!((state.contact_radius / touch.contact_radius - 1.0).abs() < 1e-6, "{state:?} {touch:?}");
+    let text = screen.keys("n").text(120, 40);
+    assert!(!text.contains("Off the path"), "{text}");
+    assert!(
+        screen.app.model.curve.as_ref().unwrap().base.notes.iter().any(|note| note.contains("exact states"))
+    );
+}
