@@ -14,8 +14,8 @@ use super::script;
 use super::walk::{Action, WalkOutcome};
 use crate::store::Source;
 use pulloff_engine::exact;
-use pulloff_engine::preset::Preset;
 use pulloff_engine::preset::changes::changes;
+use pulloff_engine::preset::{BasisSpec, Preset};
 use pulloff_engine::problem::Begin;
 use serde::{Deserialize, Serialize};
 use std::sync::Arc;
@@ -165,8 +165,10 @@ impl Journal {
     fn begun(&self, walking: &OpenWalk) -> Begin {
         let begin = walking.curve.setting.preset.path.begin;
         match (&walking.action, &self.kept.replay) {
-            // A path belongs to one beginning.
-            _ if walking.curve.along.is_some() => begin,
+            // A path belongs to one beginning, and so does a curve that has ring elements only with one of them.
+            _ if walking.curve.along.is_some() || walking.curve.setting.preset.basis != BasisSpec::Exact => {
+                begin
+            }
             (Action::Begin, _) => Begin::Apart,
             (Action::MoveTo(s), _) if s.total_cmp(&walking.curve.case.start).is_eq() => Begin::Disc,
             (_, Some(replay)) => replay.preset.path.begin,

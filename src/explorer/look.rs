@@ -10,6 +10,7 @@ use super::reach::{pick_walk_line, walk_line};
 use super::script::key_called;
 use super::view::{Axes, Overlay, ScreenPanel, View, Window};
 use pulloff_engine::preset::Key;
+use pulloff_engine::problem::Begin;
 use pulloff_engine::stability::COMPLIANCE;
 
 /// One press magnifies the chart by this factor.
@@ -184,6 +185,9 @@ pub(super) fn pin(model: &mut Model) {
 /// Pins the same problem in ring elements beside its exact solution, or the reverse; removes the pin if it is there.
 pub(super) fn in_rings(model: &mut Model) {
     const KIND: &str = "basis.kind";
+    if model.preset.path.begin == Begin::Apart {
+        return model.tell(Level::Error, "a loop has no ring elements: path.begin=disc compares them");
+    }
     let is_exact = model.preset.get(KIND).is_none_or(|kind| kind.to_string() != "rings");
     let word = if is_exact { "rings" } else { "exact" };
     let mut preset = model.preset.clone();

@@ -164,9 +164,12 @@ fn standing(model: &Model, node: &Node, control: Control) -> String {
             let is_first =
                 |kind: EventKind| model.path_events().first().is_some_and(|event| event.kind == kind.name());
             if is_first(EventKind::JumpIn) {
-                return format!(
-                    "The bodies have jumped into range, event 1, without contact. {next} runs to the next event"
-                );
+                let contact = if node.state.contact_radius > 0.0 {
+                    "into contact"
+                } else {
+                    "into range, without contact"
+                };
+                return format!("The bodies have jumped {contact}, event 1. {next} runs to the next event");
             }
             format!("The bodies have touched, event 1, and are at rest. {next} runs to the next event")
         }

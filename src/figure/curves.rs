@@ -163,15 +163,13 @@ fn pins(subject: &Subject<'_>, view: View, figure: &mut Figure) -> Vec<(f64, f64
     let mut all = Vec::new();
     let others = subject.other_pins.iter();
     figure.notes.extend(others.map(|number| format!("pin {} has other units", letter(*number))));
+    let units =
+        subject.pins.iter().filter_map(|pin| subject.scale().unlike(&pin.curve, subject.axes, view)).max();
+    figure.notes.extend(units.map(|units| format!("pins in the present {units}")));
     for pin in &subject.pins {
         let scale = pinned_scale(subject, pin);
         let points: Vec<(f64, f64)> =
             pin.curve.points.iter().map(|point| scale.place(view, place(point))).collect();
-        figure.notes.extend(
-            scale
-                .unlike(&pin.curve, subject.axes)
-                .map(|units| format!("pin {} in the present {units}", letter(pin.number))),
-        );
         let name = pin.name(subject.preset);
         let parts = pieces(&pin.curve.points, &points).into_iter();
         figure.lines.extend(parts.map(|part| {

@@ -56,7 +56,7 @@ pub fn cycle_figure(report: &PathReport, curve: &[CurvePoint], scale: Scale<'_>)
         None => format!("lost {} and the fall", shown(report.totals.dissipated_before_last_contact)),
     });
     let band = report.totals.dead_band;
-    figure.notes.extend(band.map(|band| format!("and {} in the dead band", shown(band.dissipated))));
+    figure.notes.extend(band.map(|band| format!("dead band {}", shown(band.dissipated))));
     figure
 }
 

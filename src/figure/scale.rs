@@ -57,14 +57,19 @@ impl<'a> Scale<'a> {
         Self { compliance: Scale::of(curve, axes).compliance, ..self }
     }
 
-    /// The divisors of the axes that are not those of another curve's own values, in words.
-    pub fn unlike(&self, curve: &CurveData, axes: Axes) -> Option<String> {
+    /// The divisors of the axes of `view` that are not those of another curve's own values, in words.
+    pub fn unlike(&self, curve: &CurveData, axes: Axes, view: View) -> Option<&'static str> {
         let own = Scale::of(curve, axes);
         let differ =
             |a: Option<f64>, b: Option<f64>| a.zip(b).is_some_and(|(a, b)| (a - b).abs() > 1e-12 * a.abs());
-        let names = [("Pc", differ(self.force, own.force)), ("λ", differ(self.wave, own.wave))];
-        let names: Vec<&str> = names.iter().filter(|(_, differs)| *differs).map(|(name, _)| *name).collect();
-        (!names.is_empty()).then(|| names.join(" and "))
+        let has_radius = matches!(view, View::ForceRadius | View::RadiusApproach);
+        let force = view.is_of_force() && differ(self.force, own.force);
+        match (force, has_radius && differ(self.wave, own.wave)) {
+            (false, false) => None,
+            (true, false) => Some("Pc"),
+            (false, true) => Some("λ"),
+            (true, true) => Some("Pc and λ"),
+        }
     }
 
     /// No divisors.

@@ -75,12 +75,10 @@ impl Correlation {
     /// By how much the variance of second differences is off, as a share, where the decay is found from this many rows:
     /// var ρ = (1 − ρ²)/n; M. S. Bartlett, J. R. Stat. Soc. Suppl. 8, 27 (1946). Returns the variance of that share.
     fn of_few(&self, rows: usize) -> f64 {
-        if rows == 0 {
+        if self.share <= 0.0 {
             return 0.0;
         }
-        // Where none is seen there may still be one that is too small to be seen.
-        let share = if self.share > 0.0 { self.share } else { 1.0 };
-        let slope = share * (8.0 - 4.0 * self.decay) / 6.0;
+        let slope = self.share * (8.0 - 4.0 * self.decay) / 6.0;
         slope * slope * (1.0 - self.decay * self.decay) / rows as f64 / self.of_differences().powi(2)
     }
 

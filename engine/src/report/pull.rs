@@ -543,15 +543,12 @@ fn programmes(preset: &Preset, asked: &AskedPulls) -> Result<Vec<Programme>, Pul
     Ok(vec![(rate, steps)])
 }
 
-/// The contact radius at which a dead load begins to fall: from there on the edge exceeds ten times its least speed since the
-/// last snap.
+/// The contact radius at which a dead load has all but fallen: the last hundredth of the time is left.
 fn before_fall(pull: &Pull) -> f64 {
-    const FALLS: f64 = 10.0;
-    let innermost = pull.snaps.last().map_or(f64::INFINITY, |snap| snap.to);
-    let moves = |moment: &&Moment| moment.contact_radius <= innermost && moment.speed > 0.0;
-    let least = pull.moments.iter().filter(moves).map(|moment| moment.speed).fold(f64::INFINITY, f64::min);
-    let slow = pull.moments.iter().filter(moves).rfind(|moment| moment.speed <= FALLS * least);
-    slow.map_or(0.0, |moment| moment.contact_radius)
+    const OF_TIME: f64 = 0.99;
+    let last = pull.moments.last().map_or(0.0, |moment| moment.time);
+    let before = pull.moments.iter().rfind(|moment| moment.time <= OF_TIME * last);
+    before.map_or(0.0, |moment| moment.contact_radius)
 }
 
 /// Where a pull leaves the range in which the law is good.

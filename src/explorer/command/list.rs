@@ -63,7 +63,7 @@ macro_rules! each_command {
         FineMore "fine-more" "." "a bit more" parameter InOrder Selected("KEY=VALUE") "increase it by its third digit"
             { run: |model| turn(model, Id::FineMore, None) }
         Free "free" "*" "free" parameter InOrder Selected("data.free=KEY,...")
-            "let a fit change the selected value, or hold it; or all keys that it may change"
+            "let a fit change the selected value, or hold it; KEY,... are all that it may change"
             { run: mark, takes: takes("KEY,...", |rest| rest.assigned("keys", data::FREE)) }
         Fit "fit" "F" "fit" always Nothing Yes "fit the free values to the measured curve; Esc takes the best so far"
             { words: "regression report result", run: fit }

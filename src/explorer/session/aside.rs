@@ -8,8 +8,9 @@ use pulloff_engine::preset::read::HeldFiles;
 use pulloff_engine::units::Unit;
 use serde::{Deserialize, Serialize};
 use std::borrow::Cow;
+use std::env::current_dir;
 use std::fmt::Write;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::sync::Arc;
 
 /// The first line of the rows of a profile.
@@ -56,6 +57,9 @@ impl Aside {
 pub struct SavedFile {
     pub name: String,
     folder: Option<SavedPath>,
+    /// The current folder, where the name starts from it: the session may be resumed in another one.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    current: Option<SavedPath>,
     /// The unit and the notes of a profile; a measured curve has neither.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     profile: Option<(Option<String>, Vec<String>)>,
@@ -70,14 +74,6 @@ pub struct SavedFile {
     pub held: Option<Aside>,
 }
 
-/// A folder, or the current one, as it is called from everywhere: a session may be resumed in another one.
-fn absolute(folder: Option<&Path>) -> Option<PathBuf> {
-    match folder.filter(|folder| !folder.as_os_str().is_empty()) {
-        Some(folder) => std::path::absolute(folder).ok(),
-        None => std::env::current_dir().ok(),
-    }
-}
-
 impl SavedFile {
     pub(super) fn of(file: &Aside) -> Self {
         let (name, folder, profile) = match file {
@@ -87,8 +83,18 @@ impl SavedFile {
             }
             Aside::Curve(source) => (&source.name, &source.folder, None),
         };
-        let folder = absolute(folder.as_deref()).or_else(|| folder.clone()).as_deref().map(SavedPath::of);
-        Self { name: name.clone(), folder, profile, data: None, text: None, held: Some(file.clone()) }
+        let folder = folder.as_deref().map(SavedPath::of);
+        let starts_here = folder.is_none() && Path::new(name).is_relative();
+        let current = if starts_here { current_dir().ok().as_deref().map(SavedPath::of) } else { None };
+        Self {
+            name: name.clone(),
+            folder,
+            current,
+            profile,
+            data: None,
+            text: None,
+            held: Some(file.clone()),
+        }
     }
 
     /// Writes the content into the document, unless it is in a file of its own.
@@ -101,7 +107,13 @@ impl SavedFile {
 
     /// The same with this content; `None` if a profile has no rows in it.
     pub fn with(&self, bytes: &[u8]) -> Option<Aside> {
-        let (name, folder) = (self.name.clone(), self.folder.clone().map(SavedPath::path));
+        let folder = self.folder.clone().map(SavedPath::path);
+        let elsewhere = self.current.clone().map(SavedPath::path);
+        let elsewhere = elsewhere.filter(|then| current_dir().is_ok_and(|now| now != *then));
+        let name = match elsewhere.map(|then| then.join(&self.name)) {
+            Some(path) => path.to_string_lossy().into_owned(),
+            None => self.name.clone(),
+        };
         let Some((unit, notes)) = &self.profile else {
             return Some(Aside::Curve(Arc::new(PointsFile::new(name, folder, bytes.into()))));
         };

@@ -18,11 +18,11 @@ use super::super::verdict::Reason;
 use super::{Evidence, ROUNDING, runs};
 use crate::elementary::{hypot, ln};
 use crate::measured::{Abscissa, Instrument, Segment};
+use crate::preset::edge::CLOSING_ADHESION;
 use crate::text::counted;
 use crate::units::Quantity;
 use crate::units::number::{said, short};
 use nalgebra::DVector;
-use std::f64::consts::FRAC_2_PI;
 
 /// The share of right fits that each test flags.
 const FALSE_ALARM: f64 = 1e-3;
@@ -92,6 +92,7 @@ fn held(problem: &FitProblem) -> String {
     let likely = [
         offset.then_some("data.offset, where x is zero"),
         baseline.then_some("data.baseline"),
+        problem.closing.map(|_| CLOSING_ADHESION),
         (!is_free(&is_stiffness)).then_some("the stiffness of the device"),
     ];
     let likely: Vec<&str> = likely.into_iter().flatten().collect();
@@ -214,15 +215,13 @@ fn bin(evidence: Evidence, rows: &[ScatterRow], part: usize) -> Option<Bin> {
 }
 
 /// Residuals that keep their sign.
-fn of_runs(Evidence { problem, solved, scatter, .. }: Evidence) -> Vec<Reason> {
+fn of_runs(Evidence { problem, solved, .. }: Evidence) -> Vec<Reason> {
     let mut reasons = Vec::new();
-    // A correlation ρ makes 2/π ρ fewer runs a row, and rows apart show it only to 1/√n.
-    let unseen = if scatter.apart > 0 { ONE_IN_THOUSAND / (scatter.apart as f64).sqrt() } else { 0.0 };
     for branch in 0..problem.branches() {
         let rows = problem.rows(solved, branch, false, 0);
         let of: Vec<f64> = rows.iter().map(|row| row.residual).collect();
         let found = if of.len() < RUNS_OF { 0.0 } else { runs(&of) };
-        if found > -hypot(FEWER_RUNS, FRAC_2_PI * unseen * (of.len() as f64).sqrt()) {
+        if found > -FEWER_RUNS {
             continue;
         }
         let name = rows.first().map_or("", |row| problem.data[row.index].segment.name());

@@ -3,13 +3,14 @@
 use super::super::determined::Determined;
 use super::super::options::letter;
 use super::super::path::Foot;
-use super::super::problem::FitProblem;
+use super::super::problem::{FitProblem, FreeParameter, Target};
 use super::super::scatter::Scatter;
 use super::super::solve::{SolvedFit, solve};
 use super::super::start::start;
 use super::super::track::LARGEST_MAUGIS;
 use super::super::verdict::Reason;
 use crate::measured::Segment;
+use crate::preset::edge;
 use crate::preset::schema::RANGE_KEYS;
 use crate::problem::{Adhesion, Groups};
 use crate::progress::Progress;
@@ -36,6 +37,23 @@ const LOOKED: u32 = 12;
 ///
 /// The errors hold next to the minimum. Farther off, where the range vanishes, there may be another minimum as deep,
 /// which is sought separately.
+/// A work of adhesion of the approach that has run off to zero: its logarithm has no minimum, and the errors of the others would
+/// take it as known.
+fn runs_off(problem: &FitProblem, u: &[f64]) -> Option<String> {
+    /// As a share of that of the retraction.
+    const LEAST: f64 = 1e-4;
+    let is_closing = |of: &FreeParameter| of.target == Target::Adhesion(Segment::Approach);
+    problem.parameters.iter().find(|parameter| is_closing(parameter))?;
+    let [closing, opening] = [Segment::Approach, Segment::Retraction]
+        .map(|of| Some(problem.preset_at(u, of)?.material.work_of_adhesion));
+    (closing? < LEAST * opening?).then(|| {
+        format!(
+            "the approach shows no work of adhesion above 0: hold {}, or fit the retraction alone",
+            edge::CLOSING_ADHESION
+        )
+    })
+}
+
 pub(in super::super) fn unseen(
     problem: &FitProblem,
     solved: &SolvedFit,
@@ -44,6 +62,9 @@ pub(in super::super) fn unseen(
     progress: &dyn Progress,
 ) -> Option<String> {
     let u = &solved.minimum.parameters;
+    if let Some(why) = runs_off(problem, u) {
+        return Some(why);
+    }
     let j = problem.parameters.iter().position(|parameter| RANGE_KEYS.contains(&&*parameter.key()))?;
     let error = what.errors.as_ref()?[j];
     let preset = problem.preset_at(u, Segment::Retraction)?;
