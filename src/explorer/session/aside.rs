@@ -3,6 +3,7 @@
 
 use crate::store::path::SavedPath;
 use pulloff_engine::gap::shapes::ProfileRows;
+use pulloff_engine::gap::shapes::measured::SHIPPED_DATA;
 use pulloff_engine::measured::PointsFile;
 use pulloff_engine::preset::read::HeldFiles;
 use pulloff_engine::units::Unit;
@@ -84,7 +85,8 @@ impl SavedFile {
             Aside::Curve(source) => (&source.name, &source.folder, None),
         };
         let folder = folder.as_deref().map(SavedPath::of);
-        let starts_here = folder.is_none() && Path::new(name).is_relative();
+        let is_file = !name.starts_with(SHIPPED_DATA);
+        let starts_here = is_file && folder.is_none() && Path::new(name).is_relative();
         let current = if starts_here { current_dir().ok().as_deref().map(SavedPath::of) } else { None };
         Self {
             name: name.clone(),
