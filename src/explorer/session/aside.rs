@@ -159,6 +159,23 @@ mod tests {
     use proptest::prelude::*;
     use proptest::test_runner::RngSeed;
 
+    #[test]
+    fn a_file_of_another_current_folder_keeps_its_place() {
+        let of = |name: &str, then: Option<&str>| {
+            let file = PointsFile::new(name.to_owned(), None, b"x,y\n"[..].into());
+            let mut saved = SavedFile::of(&Aside::Curve(Arc::new(file)));
+            if let (Some(then), Some(current)) = (then, &mut saved.current) {
+                *current = SavedPath::of(Path::new(then));
+            }
+            let Some(Aside::Curve(back)) = saved.with(b"x,y\n") else { return String::new() };
+            back.name.clone()
+        };
+        assert_eq!(of("a/b.csv", None), "a/b.csv");
+        assert_eq!(of("a/b.csv", Some("/then")), "/then/a/b.csv");
+        assert_eq!(of("/a/b.csv", Some("/then")), "/a/b.csv");
+        assert_eq!(of("shipped:lens.csv", Some("/then")), "shipped:lens.csv");
+    }
+
     proptest! {
         #![proptest_config(ProptestConfig {
             cases: 200, rng_seed: RngSeed::Fixed(5), failure_persistence: None, ..ProptestConfig::default()

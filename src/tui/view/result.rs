@@ -137,13 +137,18 @@ fn lines(theme: Theme, model: &Model, path: &PathReport, room: usize) -> Vec<Lin
     let lost = totals.dissipated.unwrap_or(totals.dissipated_before_last_contact);
     let energy = |lost| with_unit(&model.preset.units, Quantity::Energy, lost, theme.ascii, loss);
     let fall = if totals.dissipated.is_none() { "+" } else { "" };
-    lines.push(head(" ", pair(theme, "snaps ", &format!("{}", snaps(path)))));
-    let (name, band) = match totals.dead_band {
-        Some(band) => ("in jumps ", Some(energy(band.dissipated))),
-        None => ("lost ", None),
+    let mut count = head(" ", pair(theme, "snaps ", &format!("{}", snaps(path))));
+    let lost = format!("{}{fall}", energy(lost));
+    let last = match totals.dead_band {
+        // The panel has no line more than without one.
+        Some(band) => {
+            count.spans.push(Span::raw("  "));
+            count.spans.extend(pair(theme, "in jumps ", &lost));
+            head(" ", pair(theme, "dead band ", &energy(band.dissipated)))
+        }
+        None => head(" ", pair(theme, "lost ", &lost)),
     };
-    lines.push(head(" ", pair(theme, name, &format!("{}{fall}", energy(lost)))));
-    lines.extend(band.map(|band| head(" ", pair(theme, "dead band ", &band))));
+    lines.extend([count, last]);
     lines
 }
 

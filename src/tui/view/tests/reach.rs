@@ -525,7 +525,7 @@ fn a_loop_says_what_it_loses_in_the_dead_band() {
     let report = screen.app.model.cycle().unwrap().report().unwrap().clone();
     let band = report.totals.dead_band.unwrap().dissipated;
     let shown = pulloff_engine::report::number::loss(band);
-    for size in [(80, 24), (120, 40)] {
+    for size in [(80, 24), (120, 40), (200, 60)] {
         let text = screen.text(size.0, size.1);
         assert!(text.contains(&format!("+ dead band {shown}")), "{shown} {text}");
         assert!(
