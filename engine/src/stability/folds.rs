@@ -181,14 +181,16 @@ impl Family {
     }
 }
 
-/// The parts of a line between sign changes of F'; the point at a change belongs to both.
+/// The parts of a line between sign changes of F'; the point nearest to a change, which may be its cusp, belongs to both.
 fn cut<T>(points: &[T], slope: impl Fn(&T) -> f64) -> Vec<&[T]> {
     let mut parts = Vec::new();
     let mut from = 0;
     for k in 1..points.len() {
-        if (slope(&points[k]) > 0.0) != (slope(&points[k - 1]) > 0.0) {
-            parts.push(&points[from..=k]);
-            from = k;
+        let [before, after] = [&points[k - 1], &points[k]].map(&slope);
+        if (after > 0.0) != (before > 0.0) {
+            let at = if before.abs() < after.abs() { k - 1 } else { k };
+            parts.push(&points[from..=at]);
+            from = at;
         }
     }
     parts.push(&points[from..]);
@@ -198,4 +200,19 @@ fn cut<T>(points: &[T], slope: impl Fn(&T) -> f64) -> Vec<&[T]> {
 /// Whether F grows at the limit points of a part, judged by the majority of its points.
 fn sign<T>(part: &[T], slope: impl Fn(&T) -> f64) -> bool {
     2 * part.iter().filter(|point| slope(point) > 0.0).count() > part.len()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::cut;
+
+    #[test]
+    fn a_cusp_is_the_end_of_both_its_lines() {
+        for cusp in [1e-17, -1e-17] {
+            let slopes = [3.0, 2.0, 1.0, cusp, -1.0, -2.0];
+            assert_eq!(cut(&slopes, |slope| *slope), [&slopes[..4], &slopes[3..]]);
+        }
+        // Without one, the nearest point.
+        assert_eq!(cut(&[2.0, 0.1, -1.0], |slope| *slope), [&[2.0, 0.1][..], &[0.1, -1.0]]);
+    }
 }
