@@ -240,10 +240,13 @@ pub(super) fn as_elsewhere(list: &mut [OrderedBranch]) {
     /// The fewest rows of an approach that lie where a retraction is well apart, and how many of them must have its force.
     const FEWEST_THERE: usize = 3;
     const MOST_THERE: f64 = 0.9;
-    /// A jump begins this many times the range of those apart below their force.
+    /// A jump begins this many times the range of those apart below their force; another row may lie out of the range of n rows by
+    /// this share over √n.
     const JUMPS: f64 = 5.0;
+    const BESIDE: f64 = 3.0;
     let forces: Vec<f64> = list.iter().flat_map(|(branch, _)| branch.free.iter().map(|p| p.force)).collect();
     let Some(level) = median(forces.clone()) else { return };
+    let apart_rows = forces.len() as f64;
     let spread = range(forces.into_iter());
     // The middle of the rows apart: without a jump, the first of them may still be in contact.
     let of_middle = |branch: &MeasuredBranch| median(branch.free.iter().map(|point| point.x).collect());
@@ -262,14 +265,19 @@ pub(super) fn as_elsewhere(list: &mut [OrderedBranch]) {
         let begins_apart = branch.segment == Segment::Approach
             && of_all >= FEWEST_THERE
             && of_same as f64 >= MOST_THERE * of_all as f64;
-        let count = branch.attached.iter().rev().take_while(same).count();
-        let before = branch.attached.iter().rev().nth(count);
-        let comes_off = branch.segment == Segment::Retraction
-            && count > 0
-            && before.is_some_and(|point| point.force < level - JUMPS * spread);
-        if count >= FEWEST && (is_short || begins_apart) || comes_off {
-            branch.free = branch.attached.split_off(branch.attached.len() - count);
+        let mut count = branch.attached.iter().rev().take_while(same).count();
+        if !(count >= FEWEST && (is_short || begins_apart)) {
+            let limit = spread * (1.0 + BESIDE / apart_rows.sqrt());
+            let back = |point: &&MeasuredPoint| (point.force - level).abs() <= limit;
+            count = branch.attached.iter().rev().take_while(back).count();
+            let before = branch.attached.iter().rev().nth(count);
+            let comes_off = branch.segment == Segment::Retraction
+                && before.is_some_and(|point| point.force < level - JUMPS * limit);
+            if !comes_off {
+                continue;
+            }
         }
+        branch.free = branch.attached.split_off(branch.attached.len() - count);
     }
 }
 
