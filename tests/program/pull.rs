@@ -64,6 +64,17 @@ fn a_dead_load_falls_without_end_or_is_borne() {
         assert_eq!(peak["time"], run["last_contact"]["time"]);
         assert_eq!(peak["force"], run["last_contact"]["control"]);
     }
+    // The law is judged before the load has all but fallen, on a smooth sphere too.
+    let bound =
+        ["fig-3-jkr", "--set", "edge.exponent=1", "--set", "path.rate=1", "--set", "edge.highest_ratio=1.5"];
+    let warnings =
+        document(&[&bound[..], &["--control", "force", "--set", "edge.reference_speed=1"]].concat());
+    let warning = warnings["warnings"]
+        .as_array()
+        .unwrap()
+        .iter()
+        .find_map(|warning| warning.as_str().filter(|text| text.contains("above edge.highest_ratio")));
+    assert!(warning.is_some_and(|text| text.contains("G/gamma reaches 20")), "{warnings}");
     let loads = ["--hold-force=-0.02", "--hold-force=-0.03"];
     let found = document(&[&WAVY[..], &loads].concat());
     assert_eq!(found["runs"], Value::Array(Vec::new()));

@@ -50,7 +50,7 @@ pub fn posed(
     }
     let mut data = data(branches);
     let offset = preset.data.instrument(branches).offset;
-    let closing = closing(preset, branches, options)?;
+    let closing = closing(preset, branches, options, notes)?;
     let has_waves = preset.gap.feature_length().is_some();
     let mut targets = targets(preset, branches, (options, closing))?;
     if let Some(start) =
@@ -77,12 +77,7 @@ pub fn posed(
         // It is that of the approach now, and the values of a fit need not be in order with it.
         bare.edge.closing_work_of_adhesion = None;
     }
-    let attached = data.iter().filter(|datum| !datum.free).count();
-    // What is known before takes the place of points.
-    let needed = PER_PARAMETER * (parameters.len() - known.len()).max(2);
-    if attached < needed {
-        return Err(FitError::Few { points: attached, parameters: parameters.len(), needed });
-    }
+    are_enough(&data, parameters.len(), known.len())?;
     let abscissa = branches.abscissa;
     let mut priors = priors(&known, &parameters);
     if !is_known {
@@ -277,6 +272,14 @@ fn data(branches: &Branches) -> Vec<Datum> {
     data
 }
 
+/// Whether there are enough points in contact for the parameters, of which some are `known` before.
+fn are_enough(data: &[Datum], parameters: usize, known: usize) -> Result<(), FitError> {
+    let points = data.iter().filter(|datum| !datum.free).count();
+    // What is known before takes the place of points.
+    let needed = PER_PARAMETER * (parameters - known).max(2);
+    if points < needed { Err(FitError::Few { points, parameters, needed }) } else { Ok(()) }
+}
+
 /// The work of adhesion that a closing edge gains.
 #[derive(Debug, Clone, Copy, PartialEq)]
 enum Closing {
@@ -305,7 +308,12 @@ impl Closing {
 ///
 /// # Errors
 /// [`FitError::Key`] where that of the approach is asked for and nothing shows it.
-fn closing(preset: &Preset, branches: &Branches, options: &Options) -> Result<Closing, FitError> {
+fn closing(
+    preset: &Preset,
+    branches: &Branches,
+    options: &Options,
+    notes: &mut Vec<String>,
+) -> Result<Closing, FitError> {
     let has = |segment| branches.list.iter().any(|branch| branch.segment == segment);
     let is_loop = has(Segment::Approach) && has(Segment::Retraction);
     let named = options.free.iter().map(|name| target(preset, branches.abscissa, name));
@@ -316,8 +324,13 @@ fn closing(preset: &Preset, branches: &Branches, options: &Options) -> Result<Cl
     }
     let has_law = targets.iter().any(|target| target.key().starts_with("edge."));
     if !targets.contains(&Target::Key(CLOSING_ADHESION.to_owned())) {
-        let given = preset.edge.closing_work_of_adhesion.filter(|_| is_loop && !has_law);
-        return Ok(given.map_or(Closing::Same, Closing::Given));
+        let given = preset.edge.closing_work_of_adhesion;
+        if given.is_some() && !is_loop && has(Segment::Approach) {
+            notes.push(format!(
+                "{CLOSING_ADHESION} plays no part, as there is no retraction: the work of adhesion is that of the approach"
+            ));
+        }
+        return Ok(given.filter(|_| is_loop && !has_law).map_or(Closing::Same, Closing::Given));
     }
     let refused = |why: &str| Err(FitError::Key { key: CLOSING_ADHESION.to_owned(), why: why.to_owned() });
     if has_law {

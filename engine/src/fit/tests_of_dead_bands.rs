@@ -3,7 +3,7 @@
 use super::problem::START;
 use super::tests::{Body, E, Normal, SPHERE, W, close, noisy, preset, run, sphere};
 use super::*;
-use crate::measured::Points;
+use crate::measured::{Asked, Points, Segment};
 use crate::preset::edge::CLOSING_ADHESION;
 use crate::preset::{Value, data};
 use crate::progress::Unwatched;
@@ -13,7 +13,12 @@ const MOST: f64 = 1.6;
 
 /// A loop on a sphere with E* = 1.3 whose closing edge gains 0.01 and whose opening edge costs 0.03.
 fn pinned() -> Points {
-    let [advancing, receding] = [0.01, 0.03].map(|w| sphere(1.3, w, 2.0));
+    between([0.01, 0.03])
+}
+
+/// The same with these works of adhesion.
+fn between(works: [f64; 2]) -> Points {
+    let [advancing, receding] = works.map(|w| sphere(1.3, w, 2.0));
     let mut points = Body { state: &advancing, compliance: 0.0, most: MOST }.samples(600);
     let down = Body { state: &receding, compliance: 0.0, most: MOST };
     let ((top, pressed), (turned, _)) = (advancing(MOST), receding(MOST));
@@ -96,4 +101,32 @@ fn one_of_two_works_of_adhesion_may_be_given() {
         "{:?}",
         above.notes
     );
+}
+
+#[test]
+fn an_approach_without_adhesion_determines_no_work_of_adhesion() {
+    let mut points = between([1e-9, 0.03]);
+    let mut normal = Normal::new(0);
+    points.force.iter_mut().for_each(|force| *force += 0.01 * normal.next());
+    let found = run(&preset(SPHERE, 1.5, 0.02, ""), &points, &[E, W, CLOSING_ADHESION]);
+    assert_eq!(found.verdict, Verdict::NotDetermined, "{:?}", found.parameters);
+    let why = found.direction.unwrap();
+    assert!(why.contains("hold material.closing_work_of_adhesion"), "{why}");
+    // Held next to nothing, as that says.
+    let mut given = preset(SPHERE, 1.5, 0.02, "");
+    given.set(CLOSING_ADHESION, 1e-9.into()).unwrap();
+    let held = run(&given, &points, &[E, W]);
+    close(&held, &[1.3, 0.03, MOST], 0.02);
+    assert_eq!(held.verdict, Verdict::Describes, "{:?}", held.reasons);
+}
+
+#[test]
+fn an_approach_alone_says_which_work_of_adhesion_it_shows() {
+    let mut given = preset(SPHERE, 1.5, 0.02, "");
+    given.set(CLOSING_ADHESION, 0.015.into()).unwrap();
+    let asked = Asked { segment: Some(Segment::Approach), ..Asked::default() };
+    let options = Options { free: [E, W].map(str::to_owned).to_vec(), asked, ..Options::default() };
+    let found = fit(&given, &pinned(), &options, &Unwatched).unwrap();
+    close(&found, &[1.3, 0.01], 0.03);
+    assert!(found.notes.iter().any(|note| note.contains("is that of the approach")), "{:?}", found.notes);
 }

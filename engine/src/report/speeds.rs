@@ -169,34 +169,24 @@ impl SpeedsReport {
 
 /// Sentences on rows without a contact, on those that have several, and on those whose contact noise has taken away.
 fn doubts_of_rows(without: usize, ambiguous: usize, hidden: usize, contrary: usize) -> Vec<String> {
-    let mut doubts = Vec::new();
-    if without > 0 {
-        doubts.push(format!(
-            "{} in contact left out: no contact with tension at its edge has the force there",
-            counted(without, "row")
-        ));
-    }
-    if ambiguous > 0 {
-        doubts.push(format!(
-            "{} with the force and the approach of several contacts: those are taken between which the radius jumps least, \
-             and G may be wrong. A column of contact radii would tell",
-            counted(ambiguous, "row")
-        ));
-    }
-    if hidden > 0 {
-        doubts.push(format!(
-            "{} left out: no contact is near that of the rows before and after, as noise hides it",
-            counted(hidden, "row")
-        ));
-    }
-    if contrary > 0 {
-        doubts.push(format!(
-            "the contact radius jumps {} against the direction of its branch: noise hides the contact of some \
-             rows, and their G is that of another one. A column of contact radii would tell",
-            counted(contrary, "time")
-        ));
-    }
-    doubts
+    let doubts = [
+        (without, "row", "in contact left out: no contact with tension at its edge has the force there"),
+        (
+            ambiguous,
+            "row",
+            "with the force and the approach of several contacts: those are taken between which the radius jumps least, and \
+             G may be wrong. A column of contact radii would tell",
+        ),
+        (hidden, "row", "left out: no contact is near that of the rows before and after, as noise hides it"),
+        (
+            contrary,
+            "jump",
+            "of the contact radius against the direction of its branch: noise hides the contact of some rows, and their G \
+             is that of another one. A column of contact radii would tell",
+        ),
+    ];
+    let found = doubts.into_iter().filter(|(count, ..)| *count > 0);
+    found.map(|(count, noun, words)| format!("{} {words}", counted(count, noun))).collect()
 }
 
 /// What G is computed with, in words.

@@ -33,7 +33,7 @@ const ROWS: usize = 5;
 const BINS: usize = 12;
 /// Runs are counted in at least this many rows, and fewer runs by this many of their deviations are not chance.
 const RUNS_OF: usize = 20;
-const FEWER_RUNS: f64 = 3.3;
+const FEWER_RUNS: f64 = -3.3;
 /// So many outliers side by side, all on one side of the curve, are not chance, even where one row in five is one.
 const MISSED: usize = 8;
 /// A mean must keep at least this share of its variance: a bin that decides a value alone says nothing.
@@ -221,7 +221,7 @@ fn of_runs(Evidence { problem, solved, .. }: Evidence) -> Vec<Reason> {
         let rows = problem.rows(solved, branch, false, 0);
         let of: Vec<f64> = rows.iter().map(|row| row.residual).collect();
         let found = if of.len() < RUNS_OF { 0.0 } else { runs(&of) };
-        if found > -FEWER_RUNS {
+        if found > FEWER_RUNS {
             continue;
         }
         let name = rows.first().map_or("", |row| problem.data[row.index].segment.name());
