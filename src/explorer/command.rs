@@ -134,16 +134,12 @@ pub enum Command {
     Travel {
         id: Id,
         count: usize,
-        /// Whether single states along the walk are counted instead, as in scripts of earlier versions.
-        states: bool,
     },
     /// Turn the value of a key: the one that was selected when the key was pressed, before what the command waits for.
     Turn {
         id: Id,
         key: Key,
     },
-    /// Go to the last state of the walk with exactly these δ, P and s (reduced).
-    GoToState([f64; 3]),
     /// Go to this node of the walk.
     GoTo {
         node: usize,
@@ -205,7 +201,7 @@ impl Command {
             Self::Study { .. } => Id::Study,
             Self::Overlay(_) => Id::Overlays,
             Self::Map { .. } => Id::Map,
-            Self::GoTo { .. } | Self::GoToState(_) => Id::Branches,
+            Self::GoTo { .. } => Id::Branches,
             Self::Unpin(_) => Id::Pins,
             Self::Open(_) | Self::OpenWith { .. } | Self::Delete(_) => Id::Open,
             Self::SaveAs { .. } => Id::SaveAs,

@@ -11,16 +11,14 @@ const CHUNK: usize = 256;
 #[derive(Debug, Clone)]
 struct TreeNode {
     node: Node,
-    forward: Option<usize>,
     /// Its permanent number: pruning keeps it, and it grows from node to node.
     id: u64,
 }
 
-/// A place to return to: a node, and the child last visited from there.
+/// A node to return to.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Bookmark {
     cursor: Option<usize>,
-    forward: Option<usize>,
     numbering: u64,
 }
 
@@ -38,20 +36,16 @@ pub struct History {
 }
 
 impl History {
-    /// The tree of these nodes, each with the child last visited; `None` if they form no tree.
-    pub fn of(nodes: Vec<(Node, Option<usize>)>, cursor: Option<usize>) -> Option<Self> {
+    /// The tree of these nodes; `None` if they form no tree.
+    pub fn of(nodes: Vec<Node>, cursor: Option<usize>) -> Option<Self> {
         let count = nodes.len();
-        let parents: Vec<Option<usize>> = nodes.iter().map(|(node, _)| node.parent).collect();
-        let is_child = |of: usize, child: usize| parents.get(child).is_some_and(|parent| *parent == Some(of));
-        let grown = nodes.iter().enumerate().all(|(at, (node, forward))| {
-            node.parent.is_none_or(|parent| parent < at) && forward.is_none_or(|child| is_child(at, child))
-        });
+        let grown = nodes.iter().enumerate().all(|(at, node)| node.parent.is_none_or(|parent| parent < at));
         if !grown || cursor.is_some_and(|cursor| cursor >= count) || cursor.is_some() != (count > 0) {
             return None;
         }
         let mut tree = Self::default();
-        for (node, forward) in nodes {
-            tree.grow(node, forward);
+        for node in nodes {
+            tree.grow(node);
         }
         tree.cursor = cursor;
         Some(tree)
@@ -70,16 +64,6 @@ impl History {
     /// The node before it.
     pub fn parent(&self) -> Option<usize> {
         self.current()?.parent
-    }
-
-    /// Where redo would go.
-    pub fn redo_target(&self) -> Option<usize> {
-        self.forward(self.cursor?)
-    }
-
-    /// The child last visited from a node.
-    pub fn forward(&self, number: usize) -> Option<usize> {
-        self.entry(number)?.forward
     }
 
     /// The node with this number.
@@ -141,18 +125,6 @@ impl History {
         self.chunks.get(number / CHUNK)?.get(number % CHUNK)
     }
 
-    fn set_forward(&mut self, number: usize, child: usize) {
-        self.set_forward_to(number, Some(child));
-    }
-
-    fn set_forward_to(&mut self, number: usize, child: Option<usize>) {
-        if let Some(chunk) = self.chunks.get_mut(number / CHUNK)
-            && chunk.get(number % CHUNK).is_some_and(|entry| entry.forward != child)
-        {
-            Arc::make_mut(chunk)[number % CHUNK].forward = child;
-        }
-    }
-
     fn add(&mut self, entry: TreeNode) {
         match self.chunks.last_mut().filter(|last| last.len() < CHUNK) {
             Some(last) => Arc::make_mut(last).push(entry),
@@ -160,10 +132,10 @@ impl History {
         }
     }
 
-    fn grow(&mut self, node: Node, forward: Option<usize>) {
+    fn grow(&mut self, node: Node) {
         let id = self.next_id;
         self.next_id += 1;
-        self.add(TreeNode { node, forward, id });
+        self.add(TreeNode { node, id });
     }
 
     /// Appends a node after the current one and moves to it.
@@ -186,12 +158,8 @@ impl History {
     }
 
     fn append(&mut self, node: Node) {
-        let at = self.len();
-        if let Some(parent) = node.parent {
-            self.set_forward(parent, at);
-        }
-        self.grow(node, None);
-        self.stand(at);
+        self.grow(node);
+        self.stand(self.len() - 1);
     }
 
     /// In a walk that has become long, forgets plain states far back and renumbers the others; the nodes whose
@@ -219,20 +187,10 @@ impl History {
             if stays[at] {
                 place.push(tree.len());
                 let id = self.entry(at).map_or(0, |entry| entry.id);
-                tree.add(TreeNode { node: Node { parent, ..(*node).clone() }, forward: None, id });
+                tree.add(TreeNode { node: Node { parent, ..(*node).clone() }, id });
             } else {
                 // The first node has no parent, and always stays.
                 place.push(parent.unwrap_or(0));
-            }
-        }
-        for at in 0..nodes.len() {
-            // Skips pruned nodes; each has exactly one child.
-            let mut child = self.forward(at).filter(|_| stays[at]);
-            while let Some(gone) = child.filter(|child| !stays[*child]) {
-                child = self.forward(gone);
-            }
-            if let Some(child) = child {
-                tree.set_forward(place[at], place[child]);
             }
         }
         tree.cursor = self.cursor.map(|cursor| place[cursor]);
@@ -248,50 +206,25 @@ impl History {
 
     /// Where the walker stands.
     pub fn mark(&self) -> Bookmark {
-        Bookmark { cursor: self.cursor, forward: self.redo_target(), numbering: self.numbering }
+        Bookmark { cursor: self.cursor, numbering: self.numbering }
     }
 
     /// Returns to where it stood, as if nothing had been walked since; the nodes made since are kept.
     ///
     /// If nodes have been renumbered since, it stays where it is.
     pub fn return_to(&mut self, mark: Bookmark) {
-        let Some(at) = mark.cursor.filter(|_| mark.numbering == self.numbering) else { return };
-        self.stand(at);
-        self.set_forward_to(at, mark.forward);
-        if let Some(parent) = self.parent() {
-            self.set_forward(parent, at);
+        if let Some(at) = mark.cursor.filter(|_| mark.numbering == self.numbering) {
+            self.stand(at);
         }
     }
 
-    /// Moves to the previous node; false if there is none.
-    pub fn undo(&mut self) -> bool {
-        let (Some(here), Some(parent)) = (self.cursor, self.parent()) else { return false };
-        self.set_forward(parent, here);
-        self.stand(parent);
-        true
-    }
-
-    /// Moves to the child last visited; false if there is none.
-    pub fn redo(&mut self) -> bool {
-        let target = self.redo_target();
-        if let Some(target) = target {
-            self.stand(target);
-        }
-        target.is_some()
-    }
-
-    /// Moves to the node with this number, and redo leads back to it from wherever undo goes; false if there is none.
+    /// Moves to the node with this number; false if there is none.
     pub fn go(&mut self, number: usize) -> bool {
-        if self.node(number).is_none() {
-            return false;
+        let is_there = self.node(number).is_some();
+        if is_there {
+            self.stand(number);
         }
-        let mut at = number;
-        while let Some(parent) = self.node(at).and_then(|node| node.parent) {
-            self.set_forward(parent, at);
-            at = parent;
-        }
-        self.stand(number);
-        true
+        is_there
     }
 
     /// The walk that led to the current node: from its beginning, each node with its number.

@@ -1,15 +1,16 @@
-//! What was done in a session, as the lines of a script that repeats it.
+//! How each state of a session came about, and the script that leads to it again.
 //!
-//! A line is written when something took effect, not when it was requested: the reply to a walk says how many states it
-//! made, and only then do they become a line. What a walk depends on besides the walker's state (the values, the
-//! direction, the step length) is compared with what a replay has at that place, and set first where it differs. So
-//! values tried and taken back, a direction reversed twice and what affects only the screen leave nothing, and the
-//! order is that in which states were made, whatever the timing was.
+//! A request that makes states has an [`Origin`]: the lines that lead to where it began, and what it does there. With
+//! the number of states it has made, that gives the lines that lead to any of its states, so undo and redo leave none:
+//! wherever the walker goes in the tree, its lines are those of its state. Lines are written when something took effect,
+//! not when it was requested. What a walk depends on besides the walker's state (the values, the direction, the step
+//! length) is compared with what a replay has at that place, and set first where it differs. So values tried and taken
+//! back, a direction reversed twice and what affects only the screen leave nothing, and the order is that in which
+//! states were made, whatever the timing was.
 
 use super::command::{Command, FIRST_LENGTH, Id, MOST_STEPS};
 use super::curve::CurveData;
-use super::detours::without_detours;
-use super::node::{Node, NodeKind};
+use super::node::Trace;
 use super::script;
 use super::walk::{Action, WalkOutcome};
 use crate::store::Source;
@@ -20,16 +21,17 @@ use pulloff_engine::problem::Begin;
 use serde::{Deserialize, Serialize};
 use std::sync::Arc;
 
-/// The most lines kept, and the most bytes in them: half of what a script may have.
+/// The most lines and origins kept, and the most bytes in the lines: half of what a script may have.
 const LINES: usize = script::MOST_LINES / 2;
 const BYTES: usize = 1 << 19;
+/// Why a journal ends.
+const TOO_LONG: &str = "the session is longer than a script may be";
+const NOT_ONE_LINE: &str = "a value of the session cannot be written on one line";
 
 /// What was done since a preset was opened.
 #[derive(Debug, Clone, Default)]
 pub struct Journal {
     kept: KeptJournal,
-    /// How many states each line made; not known for the earlier lines of a resumed session.
-    states: Arc<Vec<Option<usize>>>,
     bytes: usize,
     walking: Option<OpenWalk>,
 }
@@ -41,13 +43,49 @@ pub struct Beginning<P = Preset> {
     pub preset: P,
 }
 
-/// What a replay has set at the end of the lines.
+/// How the states of a request came about.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub struct Replay<P = Preset> {
-    pub preset: P,
-    pub inward: bool,
+pub struct Origin<P = Arc<Preset>> {
+    before: Lines<P>,
+    deed: Deed,
+    /// With which state the request ended, so that a further step is another one, and the command that ends there too.
+    over: Option<(usize, Option<String>)>,
+}
+
+/// What was done, as far as it depends on the number of states made.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+enum Deed {
+    /// Nothing but setting the values.
+    Values,
+    /// Steps by hand, of one request or of several that continue each other.
+    Steps,
+    Run,
+    /// A command that makes its states whatever their number, and the direction in which it leaves the walk.
+    Whole {
+        line: String,
+        inward: Option<bool>,
+    },
+}
+
+/// Lines, and what a replay has set at their end.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Lines<P = Arc<Preset>> {
+    /// The number of the last line.
+    last: Option<usize>,
+    preset: P,
+    inward: bool,
     #[serde(with = "exact")]
-    pub length: f64,
+    length: f64,
+    /// Why the lines do not lead to the state.
+    broken: Option<String>,
+}
+
+/// A line, and the number of the line before it.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Line {
+    before: Option<usize>,
+    text: String,
 }
 
 /// A walk that is not over yet.
@@ -57,65 +95,86 @@ struct OpenWalk {
     curve: Arc<CurveData>,
     inward: bool,
     length: f64,
-    made: usize,
+    /// Where it began, and its origin once it has made a state.
+    from: Trace,
+    origin: Option<usize>,
 }
 
 /// What a session keeps of a journal: everything but a walk that is not over yet. A document holds the numbers of its
 /// presets.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub struct KeptJournal<P = Preset> {
-    pub lines: Arc<Vec<String>>,
-    pub start: Option<Box<Beginning<P>>>,
-    pub replay: Option<Box<Replay<P>>>,
-    /// The steps of the last line, if further steps can be added to it.
-    pub steps: Option<usize>,
-    /// Why the lines no longer lead to the current state.
-    pub broken: Option<String>,
+pub struct KeptJournal<P = Arc<Preset>> {
+    start: Option<Box<Beginning<P>>>,
+    lines: Arc<Vec<Line>>,
+    origins: Arc<Vec<Origin<P>>>,
+    /// The place of the walker's state.
+    here: Trace,
 }
 
-impl Default for KeptJournal {
+impl<P> Default for KeptJournal<P> {
     fn default() -> Self {
-        Self { lines: Arc::default(), start: None, replay: None, steps: None, broken: None }
+        Self { start: None, lines: Arc::default(), origins: Arc::default(), here: Trace::default() }
     }
 }
 
-impl<P> KeptJournal<P> {
+impl<P: Clone> KeptJournal<P> {
     /// The same with other presets.
     /// Errors: Those of `preset`.
-    pub fn map<Q, E>(self, mut preset: impl FnMut(P) -> Result<Q, E>) -> Result<KeptJournal<Q>, E> {
-        let Self { lines, start, replay, steps, broken } = self;
-        let start = start.map(|at| Ok(Box::new(Beginning { source: at.source, preset: preset(at.preset)? })));
+    pub fn map<Q, E>(&self, mut preset: impl FnMut(&P) -> Result<Q, E>) -> Result<KeptJournal<Q>, E> {
+        let start = self
+            .start
+            .as_ref()
+            .map(|at| Ok(Box::new(Beginning { source: at.source.clone(), preset: preset(&at.preset)? })));
         let start = start.transpose()?;
-        let replay = replay.map(|at| {
-            Ok(Box::new(Replay { preset: preset(at.preset)?, inward: at.inward, length: at.length }))
+        let origins = self.origins.iter().map(|origin| {
+            let Lines { last, preset: values, inward, length, broken } = origin.before.clone();
+            let before = Lines { last, preset: preset(&values)?, inward, length, broken };
+            Ok(Origin { before, deed: origin.deed.clone(), over: origin.over.clone() })
         });
-        Ok(KeptJournal { lines, start, replay: replay.transpose()?, steps, broken })
+        let origins = Arc::new(origins.collect::<Result<_, E>>()?);
+        Ok(KeptJournal { start, lines: Arc::clone(&self.lines), origins, here: self.here })
+    }
+}
+
+impl KeptJournal {
+    /// Whether its numbers are those of lines and origins that it has, in the order in which they were made.
+    pub fn is_whole(&self) -> bool {
+        let ascends = |(at, line): (usize, &Line)| line.before.is_none_or(|before| before < at);
+        let has_line = |origin: &Origin| origin.before.last.is_none_or(|last| last < self.lines.len());
+        self.lines.iter().enumerate().all(ascends)
+            && self.origins.iter().all(has_line)
+            && (self.start.is_none() || self.has(self.here))
+    }
+
+    /// Whether it knows how the state at this place came about.
+    pub fn has(&self, at: Trace) -> bool {
+        at.origin < self.origins.len()
     }
 }
 
 impl Journal {
     /// What a session keeps of it.
-    pub fn kept(&self) -> KeptJournal {
-        let mut over = self.clone();
-        over.abandoned();
-        over.kept
+    pub fn kept(&self) -> &KeptJournal {
+        &self.kept
     }
 
     /// The journal of a resumed session.
     pub fn of(kept: KeptJournal) -> Self {
-        let bytes = kept.lines.iter().map(String::len).sum();
-        let states = Arc::new(vec![None; kept.lines.len()]);
-        Self { kept, states, bytes, walking: None }
+        let bytes = kept.lines.iter().map(|line| line.text.len()).sum();
+        Self { kept, bytes, walking: None }
     }
 
-    /// Its lines so far; a walk under way is not among them yet.
-    pub fn lines(&self) -> &[String] {
-        &self.kept.lines
+    /// The lines that lead to the walker's state.
+    pub fn lines(&self) -> Vec<String> {
+        let mut journal = self.clone();
+        let lines = journal.lines_to(self.kept.here);
+        lines.map_or_else(Vec::new, |lines| journal.texts(&lines))
     }
 
     /// Where the walk began; nothing before the first state.
-    pub fn start(&self) -> Option<&Beginning> {
-        self.kept.start.as_deref()
+    pub fn start(&self) -> Option<Beginning> {
+        let start = self.kept.start.as_deref()?;
+        Some(Beginning { source: start.source.clone(), preset: (*start.preset).clone() })
     }
 
     /// The lines that lead to `preset`, or without one to the walker's state, walked `way` (inward or not, step
@@ -127,214 +186,252 @@ impl Journal {
         failed: bool,
     ) -> Result<Vec<String>, String> {
         let mut journal = self.clone();
-        journal.abandoned();
-        let own = journal.kept.replay.as_ref().map(|replay| replay.preset.clone());
-        if let Some(preset) = preset.or(own.as_ref()) {
-            journal.sync(preset, Some(way), failed);
-        }
-        if let Some(broken) = journal.kept.broken {
-            return Err(broken);
-        }
-        let made = journal.kept.lines.iter().cloned().zip(journal.states.iter().copied());
-        Ok(without_detours(&made.collect::<Vec<_>>()))
+        let Some(mut lines) = journal.lines_to(self.kept.here) else { return Ok(Vec::new()) };
+        let own = Arc::clone(&lines.preset);
+        journal.sync(&mut lines, preset.unwrap_or(&own), Some(way), failed);
+        let texts = journal.texts(&lines);
+        lines.broken.map_or(Ok(texts), Err)
     }
 
     pub(super) fn begin(&mut self, source: Source, preset: Preset) {
-        let inward = preset.path.begin == Begin::Disc;
-        let replay = Replay { preset: preset.anywhere(), inward, length: FIRST_LENGTH };
-        let (start, replay) = (Some(Box::new(Beginning { source, preset })), Some(Box::new(replay)));
-        *self = Self { kept: KeptJournal { start, replay, ..KeptJournal::default() }, ..Self::default() };
+        let before = Lines {
+            last: None,
+            inward: preset.path.begin == Begin::Disc,
+            preset: Arc::new(preset.anywhere()),
+            length: FIRST_LENGTH,
+            broken: None,
+        };
+        let origins = Arc::new(vec![Origin { before, deed: Deed::Values, over: None }]);
+        let start = Some(Box::new(Beginning { source, preset: Arc::new(preset) }));
+        *self = Self { kept: KeptJournal { start, origins, ..KeptJournal::default() }, ..Self::default() };
     }
 
     pub(super) fn walks(&mut self, action: Action, curve: Arc<CurveData>, inward: bool, length: f64) {
-        self.walking = Some(OpenWalk { action, curve, inward, length, made: 0 });
+        let from = self.kept.here;
+        self.walking = Some(OpenWalk { action, curve, inward, length, from, origin: None });
     }
 
-    pub(super) fn made(&mut self, states: usize) {
-        if let Some(walking) = &mut self.walking {
-            walking.made += states;
+    /// A walk made a state, from which the path leads `inward` if the walker follows one: its place.
+    pub(super) fn made(&mut self, inward: Option<bool>) -> Trace {
+        let mut here = Trace { inward, ..self.kept.here };
+        // The states that begin the first walk come of themselves.
+        if let Some(mut walking) = self.walking.take() {
+            here = Trace { inward, ..self.next(&mut walking) };
+            self.walking = Some(walking);
         }
+        self.kept.here = here;
+        here
+    }
+
+    /// The place of the next state of `walking`.
+    fn next(&mut self, walking: &mut OpenWalk) -> Trace {
+        let from = self.kept.here;
+        if walking.origin.is_some() {
+            return Trace { made: from.made + 1, ..from };
+        }
+        let is_like = |lines: &Lines, values: &Preset| {
+            *lines.preset == *values
+                && (lines.inward, lines.length.to_bits()) == (walking.inward, walking.length.to_bits())
+        };
+        let values = self.values(walking);
+        if let Action::Steps(count) = walking.action
+            && let Some(origin) = self.kept.origins.get(from.origin)
+            && origin.deed == Deed::Steps
+            && origin.over.as_ref().is_none_or(|(made, _)| *made != from.made)
+            && from.made + count <= MOST_STEPS
+            && is_like(&origin.left(from), &values)
+        {
+            walking.origin = Some(from.origin);
+            return Trace { made: from.made + 1, ..from };
+        }
+        let origin = self.originate(walking, &values, false);
+        walking.origin = Some(origin);
+        Trace { origin, made: 1, inward: None }
+    }
+
+    /// The walk could not solve the values, and leaves a state that says so: its place.
+    pub(super) fn unsolved(&mut self) -> Trace {
+        if let Some(walking) = self.walking.take() {
+            if matches!(walking.action, Action::Solve { .. }) {
+                let values = self.values(&walking);
+                let origin = self.originate(&walking, &values, true);
+                self.kept.here = Trace { origin, made: 1, inward: None };
+            }
+            self.walking = Some(walking);
+        }
+        self.kept.here
+    }
+
+    /// The values that a replay must have for `walking`, wherever it runs.
+    fn values(&self, walking: &OpenWalk) -> Preset {
+        let mut values = walking.curve.setting.preset.anywhere();
+        values.path.begin = self.begun(walking);
+        values
+    }
+
+    /// A new origin for `walking`: its number.
+    fn originate(&mut self, walking: &OpenWalk, values: &Preset, may_fail: bool) -> usize {
+        let Some(mut before) = self.lines_to(self.kept.here) else { return 0 };
+        let way = Some((walking.inward, walking.length));
+        let whole =
+            |command: &Command, inward| script::line(command).map(|line| Deed::Whole { line, inward });
+        let (way, deed) = match &walking.action {
+            Action::Solve { .. } => (None, Some(Deed::Values)),
+            Action::Steps(_) => (way, Some(Deed::Steps)),
+            Action::ToLimit | Action::ToEvent(_) | Action::Run(_) => (way, Some(Deed::Run)),
+            Action::Jump => (way, whole(&Id::Jump.into(), None)),
+            Action::Begin => (None, whole(&Id::Restart.into(), Some(false))),
+            Action::MoveTo { command: command @ Command::Plain(Id::Restart), .. } => {
+                (None, whole(command, Some(true)))
+            }
+            // Going to a radius does not turn the walk.
+            Action::MoveTo { command: command @ Command::MoveTo(_), .. }
+            | Action::MoveToState { command, .. } => (None, whole(command, None)),
+            Action::MoveTo { command, .. }
+            | Action::MoveToLimit { command, .. }
+            | Action::MoveToContacts { command, .. } => (None, whole(command, Some(walking.inward))),
+        };
+        self.sync(&mut before, values, way, may_fail);
+        if deed.is_none() {
+            before.broken = Some(NOT_ONE_LINE.to_owned());
+        }
+        if self.kept.origins.len() >= LINES {
+            before.broken = Some(TOO_LONG.to_owned());
+        }
+        let origins = Arc::make_mut(&mut self.kept.origins);
+        // Beyond that, all states share the last one.
+        if origins.len() <= LINES {
+            origins.push(Origin { before, deed: deed.unwrap_or(Deed::Values), over: None });
+        }
+        origins.len() - 1
     }
 
     /// The walk is abandoned: its further states are ignored.
     pub(super) fn abandoned(&mut self) {
-        self.ended(&WalkOutcome::Paused, false);
+        self.walking = None;
     }
 
     /// Where a replay must begin for `walking`: that is not part of the curve of one disc, and only a restart asks for it.
     fn begun(&self, walking: &OpenWalk) -> Begin {
         let begin = walking.curve.setting.preset.path.begin;
-        match (&walking.action, &self.kept.replay) {
+        match (&walking.action, self.kept.origins.get(walking.from.origin)) {
             // A path belongs to one beginning, and so does a curve that has ring elements only with one of them.
             _ if walking.curve.along.is_some() || walking.curve.setting.preset.basis != BasisSpec::Exact => {
                 begin
             }
             (Action::Begin, _) => Begin::Apart,
-            (Action::MoveTo(s), _) if s.total_cmp(&walking.curve.case.start).is_eq() => Begin::Disc,
-            (_, Some(replay)) => replay.preset.path.begin,
+            (Action::MoveTo { command: Command::Plain(Id::Restart), .. }, _) => Begin::Disc,
+            (_, Some(origin)) => origin.before.preset.path.begin,
             (_, None) => begin,
         }
     }
 
-    /// The walk is over; `is_stale` if it leaves the state marked as not solved.
-    pub(super) fn ended(&mut self, outcome: &WalkOutcome, is_stale: bool) {
-        let Some(walking) = self.walking.take() else { return };
-        let mut preset = walking.curve.setting.preset.clone();
-        preset.path.begin = self.begun(&walking);
-        let preset = &preset;
-        let way = Some((walking.inward, walking.length));
-        let is_solve = matches!(walking.action, Action::Solve { .. });
-        // A value that could not be solved and has been taken back meanwhile leaves nothing to replay.
-        if walking.made == 0 && !(is_stale && is_solve) {
-            return;
-        }
-        let (made, before) = (walking.made, self.kept.lines.len());
-        match walking.action {
-            Action::Solve { .. } => self.sync(preset, None, is_stale),
-            Action::Steps(_) => {
-                self.sync(preset, way, false);
-                // Beyond a limit point, or after the end, a further step is a separate walk.
-                self.step(walking.made, matches!(outcome, WalkOutcome::Done | WalkOutcome::Paused));
-            }
-            Action::ToLimit | Action::ToEvent(_) | Action::Run(_) => {
-                self.sync(preset, way, false);
-                let is_over = match outcome {
-                    WalkOutcome::AtLimit => true,
-                    WalkOutcome::Ended(_) => !matches!(walking.action, Action::Run(_)),
-                    _ => false,
-                };
-                self.write(&match (is_over, walking.action) {
-                    (true, Action::ToEvent(_)) => Id::NextEvent.into(),
-                    (true, _) => Id::Run.into(),
-                    (false, _) => Command::RunOf(walking.made),
-                });
-            }
-            Action::Jump => {
-                self.sync(preset, way, false);
-                self.write(&Id::Jump.into());
-            }
-            Action::Begin => {
-                self.sync(preset, None, false);
-                self.write(&Id::Restart.into());
-                self.turned(false);
-            }
-            Action::MoveTo(s) => {
-                let case = &walking.curve.case;
-                self.sync(preset, None, false);
-                if s.total_cmp(&case.start).is_eq() && walking.curve.along.is_none() {
-                    self.write(&Id::Restart.into());
-                    self.turned(true);
-                } else {
-                    self.write(&Command::MoveTo(product(s, case.units().length)));
-                }
-            }
-            Action::MoveToState { command, .. } => {
-                self.sync(preset, None, false);
-                self.write(&command);
-            }
-            Action::MoveToLimit { command, .. } | Action::MoveToContacts { command, .. } => {
-                self.sync(preset, None, false);
-                self.write(&command);
-                self.turned(walking.inward);
-            }
-        }
-        let all = self.kept.steps.filter(|all| *all > made).unwrap_or(made);
-        let has_line = self.kept.lines.len() > before || all > made;
-        if let Some(last) = Arc::make_mut(&mut self.states).last_mut() {
-            // If states were made without a line, it is not known which line an undo takes back.
-            *last = has_line.then_some(all);
+    /// The walk is over.
+    pub(super) fn ended(&mut self, outcome: &WalkOutcome) {
+        let Some(OpenWalk { action, origin: Some(origin), .. }) = self.walking.take() else { return };
+        let ends = match (&action, outcome) {
+            // Beyond a limit point, or after the end, a further step is a separate walk.
+            (Action::Steps(_), WalkOutcome::Done | WalkOutcome::Paused) => return,
+            (Action::ToEvent(_), WalkOutcome::AtLimit | WalkOutcome::Ended(_)) => Some(Id::NextEvent),
+            (Action::ToLimit, WalkOutcome::AtLimit | WalkOutcome::Ended(_))
+            | (Action::Run(_), WalkOutcome::AtLimit) => Some(Id::Run),
+            _ => None,
+        };
+        let made = self.kept.here.made;
+        if let Some(origin) = Arc::make_mut(&mut self.kept.origins).get_mut(origin) {
+            origin.over = Some((made, ends.and_then(|id| script::line(&id.into()))));
         }
     }
 
-    /// An undo, redo or change of branch led to `node` and its values.
-    pub(super) fn travelled(&mut self, command: &Command, node: Option<&Node>) {
-        self.write(command);
-        let (Some(replay), Some(node)) = (&mut self.kept.replay, node) else { return };
-        if !matches!(node.kind, NodeKind::Stale(_)) {
-            let mut preset = node.setting.preset.anywhere();
-            preset.title.clone_from(&replay.preset.title);
-            preset.path.control = replay.preset.path.control;
-            preset.path.begin = replay.preset.path.begin;
-            replay.preset = preset;
-        }
+    /// The walker goes to the state at this place.
+    pub(super) fn go(&mut self, to: Trace) {
+        self.kept.here = to;
     }
 
-    /// The last command leaves the walk in this direction.
-    pub(super) fn turned(&mut self, inward: bool) {
-        if let Some(replay) = &mut self.kept.replay {
-            replay.inward = inward;
+    /// The lines that lead to the state at `to`; nothing before the first state.
+    fn lines_to(&mut self, to: Trace) -> Option<Lines> {
+        let origin = self.kept.origins.get(to.origin)?;
+        let mut lines = origin.left(to);
+        let line = match &origin.deed {
+            Deed::Values => None,
+            Deed::Steps => script::line(&Command::Steps(to.made)),
+            Deed::Run => match &origin.over {
+                Some((made, Some(line))) if *made == to.made => Some(line.clone()),
+                _ => script::line(&Command::RunOf(to.made)),
+            },
+            Deed::Whole { line, .. } => Some(line.clone()),
+        };
+        if let Some(line) = line {
+            self.write(&mut lines, line);
         }
+        Some(lines)
+    }
+
+    /// The text of all of `lines`, from the first to the last.
+    fn texts(&self, lines: &Lines) -> Vec<String> {
+        let line = |at: usize| self.kept.lines.get(at);
+        let back = std::iter::successors(lines.last.and_then(line), |last| last.before.and_then(line));
+        let mut texts: Vec<String> = back.map(|line| line.text.clone()).collect();
+        texts.reverse();
+        texts
     }
 
     /// Writes what a replay needs to have set before the next line: values, direction, step length.
-    fn sync(&mut self, preset: &Preset, way: Option<(bool, f64)>, may_fail: bool) {
-        let Some(mut replay) = self.kept.replay.take() else { return };
+    fn sync(&mut self, lines: &mut Lines, values: &Preset, way: Option<(bool, f64)>, may_fail: bool) {
         // The script may be run from another folder.
-        let preset = preset.anywhere();
-        if replay.preset != preset {
-            match changes(&replay.preset, &preset) {
-                Some(all) => self.write_line(may_fail, &Command::Assign(all)),
+        let values = values.anywhere();
+        if *lines.preset != values {
+            match changes(&lines.preset, &values) {
+                Some(all) => match script::line(&Command::Assign(all)) {
+                    Some(line) if may_fail => self.write(lines, format!("try {line}")),
+                    Some(line) => self.write(lines, line),
+                    None => lines.broken = Some(NOT_ONE_LINE.to_owned()),
+                },
                 None => {
-                    self.kept.broken = Some("a value that was dropped cannot be put in a script".to_owned());
+                    lines.broken = Some("a value that was dropped cannot be put in a script".to_owned());
                 }
             }
-            replay.preset = preset;
+            lines.preset = Arc::new(values);
         }
         if let Some((inward, length)) = way {
-            if replay.inward != inward {
-                self.write(&Id::Reverse.into());
-                replay.inward = inward;
+            if lines.inward != inward {
+                self.write_command(lines, &Id::Reverse.into());
+                lines.inward = inward;
             }
-            if replay.length.to_bits() != length.to_bits() {
-                self.write(&Command::StepLength(length));
-                replay.length = length;
+            if lines.length.to_bits() != length.to_bits() {
+                self.write_command(lines, &Command::StepLength(length));
+                lines.length = length;
             }
         }
-        self.kept.replay = Some(replay);
     }
 
-    fn step(&mut self, count: usize, goes_on: bool) {
-        let merged = self.kept.steps.map(|before| before + count).filter(|all| *all <= MOST_STEPS);
-        if merged.is_some()
-            && let Some(last) = Arc::make_mut(&mut self.kept.lines).pop()
-        {
-            Arc::make_mut(&mut self.states).pop();
-            self.bytes -= last.len();
+    fn write_command(&mut self, lines: &mut Lines, command: &Command) {
+        match script::line(command) {
+            Some(line) => self.write(lines, line),
+            None => lines.broken = Some(NOT_ONE_LINE.to_owned()),
         }
-        let count = merged.unwrap_or(count);
-        self.write(&Command::Steps(count));
-        self.kept.steps = goes_on.then_some(count);
     }
 
-    fn write(&mut self, command: &Command) {
-        self.write_line(false, command);
-    }
-
-    fn write_line(&mut self, may_fail: bool, command: &Command) {
-        self.kept.steps = None;
-        if self.kept.replay.is_none() && self.kept.start.is_none() {
+    fn write(&mut self, lines: &mut Lines, text: String) {
+        let all = Arc::make_mut(&mut self.kept.lines);
+        if all.len() >= LINES || self.bytes + text.len() > BYTES || text.len() > script::LONGEST {
+            lines.broken = Some(TOO_LONG.to_owned());
             return;
         }
-        let Some(line) = script::line(command) else {
-            self.kept.broken = Some("a value of the session cannot be written on one line".to_owned());
-            return;
-        };
-        let line = if may_fail { format!("try {line}") } else { line };
-        if self.kept.lines.len() >= LINES || self.bytes + line.len() > BYTES || line.len() > script::LONGEST {
-            self.kept.broken = Some("the session is longer than a script may be".to_owned());
-            return;
-        }
-        self.bytes += line.len();
-        Arc::make_mut(&mut self.kept.lines).push(line);
-        Arc::make_mut(&mut self.states).push(Some(0));
+        self.bytes += text.len();
+        all.push(Line { before: lines.last, text });
+        lines.last = Some(all.len() - 1);
     }
 }
 
-/// The number that gives `x` again when divided by `unit`, if rounding permits one.
-fn product(x: f64, unit: f64) -> f64 {
-    let near = x * unit;
-    let all = [near, near.next_up(), near.next_down()];
-    all.into_iter().find(|y| (y / unit).total_cmp(&x).is_eq()).unwrap_or(near)
+impl Origin {
+    /// What a replay has set at the state at `to`, with the lines before the last one.
+    fn left(&self, to: Trace) -> Lines {
+        let mut lines = self.before.clone();
+        let whole = if let Deed::Whole { inward, .. } = self.deed { inward } else { None };
+        lines.inward = to.inward.or(whole).unwrap_or(lines.inward);
+        lines
+    }
 }
 
 #[cfg(test)]

@@ -44,7 +44,7 @@
 //! | `saves` | saves that follow each other faster than they are answered |
 //! | [`session`] | a session as a document, to be resumed |
 //! | [`archive`] | the sessions on disk |
-//! | [`journal`], `detours` | what was done, as the lines of a script; without what was undone |
+//! | [`journal`] | how each state came about, as the lines of a script |
 //! | [`script`] | commands as text, and scripts run on a model |
 //! | [`driver`] | runs effects inline (tests, scripts) or on worker threads (the screen) |
 //!
@@ -59,7 +59,6 @@ pub mod branches;
 pub mod command;
 pub mod curve;
 pub mod data;
-mod detours;
 pub mod device;
 pub mod driver;
 pub mod effect;

@@ -196,7 +196,6 @@ pub struct Model {
 pub struct Untried {
     pub place: SessionPlace,
     pub mark: Bookmark,
-    pub journal: Journal,
 }
 
 /// Whether a state solves the problem of `curve`.

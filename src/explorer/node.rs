@@ -30,6 +30,17 @@ pub enum NodeKind {
     Stale(String),
 }
 
+/// The place of a state in the [journal](super::journal).
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Trace {
+    /// The number of its origin, and how many states that had made with it.
+    pub origin: usize,
+    pub made: usize,
+    /// The direction in which the walker leaves it, where the request does not determine that.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub inward: Option<bool>,
+}
+
 /// One state of the walk.
 #[derive(Debug, Clone)]
 pub struct Node {
@@ -62,6 +73,8 @@ pub struct Node {
     pub begins: bool,
     /// The number of the walk request that made it: all states made by one command share a number.
     pub request: u64,
+    /// Its place in the journal, which is known once it is in the tree.
+    pub trace: Trace,
 }
 
 impl Node {

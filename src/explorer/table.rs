@@ -13,8 +13,8 @@ use super::job::Job;
 use super::model::Model;
 use super::requests::file;
 use super::script::arguments::{
-    Takes, assigned, axes, branch, destination, exported, pin, place, preset, quantity, saved, saved_as,
-    takes, theory, travelled, view,
+    Takes, assigned, axes, destination, exported, pin, place, preset, quantity, saved, saved_as, takes,
+    theory, travelled, view,
 };
 use super::script::offers::{
     Offer, assignments_of, axes_of, branches_of, controls, curves, documents, names, pins_of, places,

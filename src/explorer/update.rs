@@ -36,7 +36,7 @@ use curve::curve_came;
 use files::{export, file_done, save, save_as};
 use places::{go_to_event, move_to, select_event};
 use selection::{pick, study};
-use travel::{by_states, go_to, go_to_state, travel};
+use travel::{go_to, travel};
 use turns::{enqueue, gesture, is_blocked, recorded, waits};
 use values::{assign, set, try_out, turn, untry};
 use walk::{run, step, walk, walked};
@@ -69,15 +69,10 @@ pub fn update(model: &mut Model, command: Command) -> Vec<Effect> {
 /// Does what is allowed now, and refuses the rest with the reason. What it changed can be undone.
 fn allowed(model: &mut Model, command: Command) -> Vec<Effect> {
     // The tree decides which states there are, not undo.
-    let by_states = matches!(
-        command,
-        Command::Travel { states: true, .. } | Command::GoToState(_) | Command::GoTo { .. }
-    );
-    if !by_states && !is_available(model, command.id()) {
+    if !matches!(command, Command::GoTo { .. }) && !is_available(model, command.id()) {
         return model.refuse(why_unavailable(model, command.id()));
     }
-    let is_travel =
-        matches!(command, Command::Plain(Id::Undo | Id::Redo) | Command::Travel { states: false, .. });
+    let is_travel = matches!(command, Command::Plain(Id::Undo | Id::Redo) | Command::Travel { .. });
     if is_travel || waits(&command) == Waits::Nothing && command != Id::Edit.into() {
         return obey(model, command);
     }
@@ -133,9 +128,7 @@ fn obey(model: &mut Model, command: Command) -> Vec<Effect> {
         Command::Overlay(overlay) => look::overlay(model, overlay),
         Command::Map { x, y } => look::map_of(model, &x, y.as_ref()),
         Command::GoTo { node, numbering } => return go_to(model, node, numbering),
-        Command::GoToState(state) => return go_to_state(model, state),
-        Command::Travel { id, count, states: false } => return travel(model, id, count),
-        Command::Travel { id, count, states: true } => return by_states(model, id, count),
+        Command::Travel { id, count } => return travel(model, id, count),
         Command::Turn { id, key } => return turn(model, id, Some(&key)),
         Command::Unpin(number) => look::unpin(model, number),
         Command::Open(name) => return vec![file(Job::Open { name, assignments: Vec::new() })],

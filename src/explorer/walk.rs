@@ -6,7 +6,7 @@ use super::command::{Command, Id};
 use super::curve::CurveData;
 use super::follow::Before;
 use super::history::History;
-use super::node::{Node, NodeKind};
+use super::node::{Node, NodeKind, Trace};
 use pulloff_engine::annuli::Contacts;
 use pulloff_engine::case::Case;
 use pulloff_engine::problem::{Begin, Control, Turn};
@@ -38,8 +38,8 @@ pub enum Action {
     Run(usize),
     /// The edge runs at constant control to the next stable state.
     Jump,
-    /// The state with this contact radius (reduced), on the explicit curve.
-    MoveTo(f64),
+    /// The state with this contact radius (reduced), on the explicit curve, and the command that leads there.
+    MoveTo { radius: f64, command: Command },
     /// The state with this number on the path that the walker follows, and the command that leads there.
     MoveToState { at: usize, command: Command },
     /// The limit point of the curve with this number, where an event begins, and the command that leads there.
@@ -65,14 +65,16 @@ pub enum Action {
 impl Action {
     /// Whether it begins a new walk, wherever the walker stood.
     pub fn begins(&self) -> bool {
-        let is_move = matches!(self, Self::MoveTo(_) | Self::MoveToState { .. } | Self::Begin);
+        let is_move = matches!(self, Self::MoveTo { .. } | Self::MoveToState { .. } | Self::Begin);
         is_move || matches!(self, Self::MoveToLimit { .. } | Self::MoveToContacts { .. })
     }
 
     /// Goes to where a walk on `curve` begins with `begin`, which need not be that of the curve's preset.
     pub fn beginning(begin: Begin, curve: &CurveData) -> Self {
         match begin {
-            Begin::Disc if curve.along.is_none() => Self::MoveTo(curve.case.start),
+            Begin::Disc if curve.along.is_none() => {
+                Self::MoveTo { radius: curve.case.start, command: Id::Restart.into() }
+            }
             Begin::Disc | Begin::Apart => Self::Begin,
         }
     }
@@ -156,7 +158,7 @@ fn follow(request: &Request, action: &Action, arrive: &mut Emit<'_>) -> Walked {
         Action::ToEvent(Some(end)) => to_end(&walk, *end, arrive),
         Action::Run(count) => walk.steps(*count, true, arrive),
         Action::Jump => walk.jump(arrive),
-        Action::MoveTo(s) => walk.move_to(*s, arrive),
+        Action::MoveTo { radius, .. } => walk.move_to(*radius, arrive),
         Action::MoveToContacts { contacts, value, at, .. } => {
             walk.move_to_contacts(contacts, *value, *at, arrive)
         }
@@ -244,7 +246,7 @@ fn along(request: &Request, action: &Action, arrive: &mut Emit<'_>) -> Walked {
         Action::ToLimit | Action::ToEvent(_) => along.steps(RUN_POINTS, arrive),
         Action::Jump => along.jump(arrive),
         Action::Begin => along.move_to(0, arrive),
-        Action::MoveTo(s) => along.move_near(*s, direction, arrive),
+        Action::MoveTo { radius, .. } => along.move_near(*radius, direction, arrive),
         Action::MoveToState { at, .. } => along.move_to(*at, arrive),
         Action::MoveToLimit { .. } | Action::MoveToContacts { .. } => {
             Err(WalkFailure::NoEquilibrium("on a curve"))
@@ -388,6 +390,7 @@ fn made(request: &Request, reached: Reached) -> Node {
         from_exact: exact,
         on_path,
         begins: request.action.begins(),
+        trace: Trace::default(),
         kind,
         ahead,
         point,

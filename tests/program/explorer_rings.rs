@@ -76,7 +76,7 @@ fn a_script_walks_the_rings_again() {
     let mut session = with_ring();
     session.does(Command::Steps(2)).set("material.work_of_adhesion", "0.000101").does(Id::NextEvent);
     let last = session.model.walker().unwrap().state;
-    let lines = session.model.journal.lines().to_vec();
+    let lines = session.model.journal.lines();
     let mut again = Session::new("fig-9-weak");
     for line in &lines {
         again.does(pulloff::explorer::script::parse(line).unwrap().unwrap());

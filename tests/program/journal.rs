@@ -16,15 +16,24 @@ use std::path::Path;
 use tempfile::TempDir;
 
 /// Small problems, so that many walks are quick: exact and in rings, in reduced units and in SI.
-const PROBLEMS: [(&str, &[&str]); 3] = [
+const PROBLEMS: [(&str, &[&str]); 4] = [
     ("wavy-sphere", &["gap.wavelength=0.1", "path.end_contact_radius=0.12"]),
     ("fig-9", &["basis.rings=40", "gap.wavelength=0.1", "path.end_contact_radius=0.12"]),
     ("wavy-sphere", &["gap.shape=sphere", "basis.kind=rings", "basis.rings=30", "path.control=force"]),
+    ("wavy-sphere", &["gap.wavelength=0.1", "path.begin=apart", "path.end_contact_radius=0.12"]),
 ];
 
 fn any_command(rng: &mut Rng) -> Command {
     let set = |key: &'static str, text: String| Command::Set { key: key.into(), text };
-    match rng.u8(..32) {
+    match rng.u8(..37) {
+        34 => Id::MoveTo.into(),
+        35 => Command::MoveTo(0.1 + 0.4 * rng.f64()),
+        36 => set("material.closing_work_of_adhesion", ["0.002", "none"][rng.usize(..2)].to_owned()),
+        32 => set("path.begin", ["apart", "disc"][rng.usize(..2)].to_owned()),
+        33 => Command::Assign(vec![
+            ("gap.amplitude".into(), "0.0018".to_owned()),
+            ("path.control".into(), ["force", "displacement"][rng.usize(..2)].to_owned()),
+        ]),
         0..=5 => Command::Steps(rng.usize(1..6)),
         6..=8 => Id::NextEvent.into(),
         10..=12 => Id::Jump.into(),
@@ -178,7 +187,7 @@ fn begun(seed: u64) -> (TempDir, Model, Inline) {
 #[test]
 fn a_replay_walks_the_same_states_whatever_was_done() {
     let mut steps = 0;
-    for seed in 0..12 {
+    for seed in 0..16 {
         let mut rng = Rng::with_seed(seed);
         let (folder, mut model, driver) = begun(seed);
         let mut done = Vec::new();
@@ -237,10 +246,6 @@ fn the_journal_says_what_was_done_and_leaves_out_what_was_not() {
     let expected = [
         "step 6",
         "next-event",
-        "jump",
-        "undo 1 states",
-        "undo 18 states",
-        "redo 18 states",
         "step-length 0.01",
         "step 1",
         "set gap.amplitude=0.0026",
@@ -252,17 +257,17 @@ fn the_journal_says_what_was_done_and_leaves_out_what_was_not() {
     // Tried and taken back.
     let before = session.model.history.cursor();
     session.set("gap.shape", "formula");
-    let lines = session.model.journal.lines().to_vec();
+    let lines = session.model.journal.lines();
     let after = session.model.history.cursor();
     assert_ne!(before, after);
     let key = "gap.formula";
     session.does(Command::Try { key: key.into(), text: "r^2/2.2".to_owned() });
     assert_ne!(session.model.journal.lines(), lines);
     session.does(Command::TakeBack);
-    assert_eq!((session.model.journal.lines(), session.model.history.cursor()), (&*lines, after));
+    assert_eq!((session.model.journal.lines(), session.model.history.cursor()), (lines.clone(), after));
     // What a session keeps of the journal continues in the same way.
     let kept = session.model.journal.kept();
-    assert_eq!(*kept.lines, lines);
+    assert_eq!(Journal::of(kept.clone()).lines(), lines);
     assert_eq!(Journal::of(kept.clone()).kept(), kept);
     // A newly opened preset starts a new journal.
     session.does(Command::Open("fig-3-jkr".to_owned())).does(Id::Restart);

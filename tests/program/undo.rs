@@ -82,7 +82,7 @@ fn small() -> Session {
 
 /// Undoes everything and redoes it; each place must be as it was.
 fn back_and_forth(session: &mut Session) -> usize {
-    session.does(Command::Travel { id: Id::Redo, count: 400, states: false });
+    session.does(Command::Travel { id: Id::Redo, count: 400 });
     let end = told(session);
     let mut places = vec![end];
     while session.does(Id::Undo).model.message.is_none() || !session.status().contains("nothing to undo") {
@@ -320,9 +320,6 @@ fn scripts_undo_as_keys_do() {
     assert_eq!(control.model.preset, control.model.saved);
     assert_eq!(told(&played("step 5\nundo\n")), told(&played("")));
     assert_eq!(told(&played("set gap.amplitude=0.003\nstep 3\ncontrol force\nundo 3\n")), told(&played("")));
-    // By states.
-    let four = told(&played("step 4\n"));
-    assert_eq!(told(&played("step 5\nundo 1 states\n")), four);
 }
 
 #[test]

@@ -2,7 +2,7 @@
 
 use super::groups;
 use super::model::Preset;
-use super::schema::{CHOOSERS, Fallback, Key, Kind, Parameter, SYSTEMS};
+use super::schema::{CHOOSERS, Fallback, Key, Kind, NONE, Parameter, SYSTEMS};
 use super::value::Value;
 use crate::units::UnitSystem;
 
@@ -43,15 +43,13 @@ pub fn differences(from: &Preset, to: &Preset) -> Vec<(Key, String)> {
     .collect()
 }
 
-/// The value that `to` has; for a measured curve, otherwise the word that removes the value that `now` has.
+/// The value that `to` has, or else the word that removes the value that `now` has.
 fn wanted(now: &Preset, to: &Preset, row: &Parameter) -> Option<Value> {
-    let taken_away = || match row.fallback {
-        Fallback::Text(word) if row.table() == Some("data") && now.get(&row.key).is_some() => {
-            Some(word.into())
-        }
-        _ => None,
+    let word = match row.fallback {
+        Fallback::Text(word) if row.table() == Some("data") => Some(word),
+        _ => row.is_optional().then_some(NONE),
     };
-    to.get(&row.key).or_else(taken_away)
+    to.get(&row.key).or_else(|| word.filter(|_| now.get(&row.key).is_some()).map(Value::from))
 }
 
 /// Gives `now` the value that `to` has; false if it has it already or cannot have it yet.
@@ -109,11 +107,16 @@ mod tests {
         let expected = [("title", "12"), ("gap.amplitude", "0.1")];
         let expected = expected.map(|(key, text)| (Key::from(key), text.to_owned()));
         assert_eq!(changes(&from, &to), Some(expected.to_vec()));
-        // An end that follows from the start cannot be typed.
+        // A value that need not be given can be removed.
         let mut from = from;
         from.reset("path.end_contact_radius").unwrap();
         to.assign("path.end_contact_radius", "0.01").unwrap();
-        assert!(changes(&from, &to).is_some() && changes(&to, &from).is_none());
+        to.assign("material.closing_work_of_adhesion", "0.001").unwrap();
+        for (from, to) in [(&from, &to), (&to, &from)] {
+            let mut changed = from.clone();
+            changed.assign_all(&changes(from, to).unwrap()).unwrap();
+            assert_eq!(changed, *to);
+        }
         // A measured curve can be removed.
         let (with, mut without) = (preset("lens"), preset("lens"));
         without.set("data.file", "none".into()).unwrap();

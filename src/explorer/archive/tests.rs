@@ -1,4 +1,5 @@
 use super::*;
+use crate::explorer::session::FORMAT;
 use crate::explorer::{Command, Id, Inline, Model, Reply, answer, open, update};
 use crate::store::Store;
 use crate::store::hash::sha256;
@@ -316,9 +317,10 @@ fn a_damaged_session_is_kept_aside_and_said_once() {
     assert_eq!(bench.files(), ["fig-3-jkr-1.damaged", "fig-3-jkr-2.json"]);
     assert_eq!(fs::read(folder.join("fig-3-jkr-1.damaged")).unwrap(), half);
     // A session of a later version is left where it is.
-    let text = String::from_utf8(whole).unwrap().replacen("\"format\":6", "\"format\":7", 1);
+    let text =
+        String::from_utf8(whole).unwrap().replacen(&format!("\"format\":{FORMAT}"), "\"format\":99", 1);
     fs::write(folder.join("fig-3-jkr-8.json"), &text).unwrap();
-    assert!(bench.archive().cut_off().unwrap_err().contains("has format 7"));
+    assert!(bench.archive().cut_off().unwrap_err().contains("has format 99"));
     assert_eq!(fs::read_to_string(folder.join("fig-3-jkr-8.json")).unwrap(), text);
 }
 

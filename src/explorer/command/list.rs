@@ -41,9 +41,8 @@ macro_rules! each_command {
             { words: "back take revert", run: |model| travel(model, Id::Undo, 1), takes: takes("number", |rest| travelled(rest, Id::Undo)) }
         Redo "redo" "Ctrl-R" "redo" redo InOrder Yes "redo what was undone" { run: |model| travel(model, Id::Redo, 1),
             takes: takes("number", |rest| travelled(rest, Id::Redo)) }
-        Branches "branches" "B" "branches" branches InOrder Needs("the reduced approach, force and contact radius of a state")
-            "the branches of the walk: how each ended, and a way back"
-            { takes: takes("branch", branch).listing(branches_of) }
+        Branches "branches" "B" "branches" branches InOrder Screen "the branches of the walk: how each ended, and a way back"
+            { takes: Takes::NOTHING.listing(branches_of) }
         Restart "restart" "Home" "start" walker_or_no_curve Curve Yes "start again" { words: "reset beginning", run: restart }
         Control "control" "c" "control" always Curve Needs("a control")
             "what the device prescribes: displacement, force, or stiffness" { words: "device",

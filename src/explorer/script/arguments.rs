@@ -187,10 +187,9 @@ pub(super) fn unknown(word: &Word, what: &str, known: &[&str]) -> ScriptFault {
     ScriptFault::new(word.column, format!("no {what} is called \"{}\"{allowed}{hint}", quote(&word.text)))
 }
 
-/// A number of commands, or of single states as scripts count them.
+/// A number of commands.
 pub(in crate::explorer) fn travelled(rest: &mut Rest<'_>, id: Id) -> Result<Command, ScriptFault> {
-    let count = rest.count("a number", MOST_STEPS)?;
-    Ok(Command::Travel { id, count, states: rest.takes("states") })
+    Ok(Command::Travel { id, count: rest.count("a number", MOST_STEPS)? })
 }
 
 /// Where the walker goes: A, an event, or a contact radius.
@@ -204,12 +203,6 @@ pub(in crate::explorer) fn destination(rest: &mut Rest<'_>) -> Result<Command, S
     let allowed = "a contact radius: a positive number in the preset's units";
     let is_radius = |radius: &f64| radius.is_finite() && *radius > 0.0;
     Ok(Command::MoveTo(number(rest.need("a contact radius")?, allowed, is_radius)?))
-}
-
-/// A state by its reduced numbers.
-pub(in crate::explorer) fn branch(rest: &mut Rest<'_>) -> Result<Command, ScriptFault> {
-    let mut finite = |what| number(rest.need(what)?, "a finite number", |x: &f64| x.is_finite());
-    Ok(Command::GoToState([finite("an approach")?, finite("a force")?, finite("a contact radius")?]))
 }
 
 pub(in crate::explorer) fn assigned(rest: &mut Rest<'_>) -> Result<Command, ScriptFault> {

@@ -10,13 +10,11 @@ pub fn line(command: &Command) -> Option<String> {
     let name = command.id().name();
     let rest = match command {
         Command::Plain(_) => String::new(),
-        Command::Steps(count) | Command::RunOf(count) | Command::Travel { count, states: false, .. } => {
+        Command::Steps(count) | Command::RunOf(count) | Command::Travel { count, .. } => {
             format!(" {count}")
         }
         Command::SelectEvent(number) => format!(" event {number}"),
         Command::StepLength(length) | Command::MoveTo(length) => format!(" {length:?}"),
-        Command::Travel { count, states: true, .. } => format!(" {count} states"),
-        Command::GoToState([approach, force, radius]) => format!(" {approach:?} {force:?} {radius:?}"),
         Command::Assign(all) => assignments(all)?,
         Command::Map { x, y } => {
             let y = y.as_ref().map_or(Some(String::new()), |y| Some(format!(" {}", quoted(y)?)))?;

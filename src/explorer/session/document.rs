@@ -13,6 +13,7 @@ use crate::store::{Fingerprint, Source};
 use pulloff_engine::quasistatic::State;
 use serde::{Deserialize, Serialize};
 use std::convert::Infallible;
+use std::sync::Arc;
 
 /// How a session ended.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
@@ -83,8 +84,7 @@ impl Document {
         let preset = problems.preset(&snapshot.preset);
         let saved = problems.preset(&snapshot.saved);
         let pins = snapshot.pins.iter().map(|(number, preset)| (*number, problems.preset(preset))).collect();
-        let Ok(journal) =
-            snapshot.journal.clone().map(|preset| Ok::<_, Infallible>(problems.preset(&preset)));
+        let Ok(journal) = snapshot.journal.map(|preset| Ok::<_, Infallible>(problems.preset(preset)));
         let nodes = tree::nodes(&snapshot.history, |setting| problems.setting(setting));
         let undo = SavedPlaces::of(&snapshot.undo, &snapshot.history, |preset| problems.preset(preset));
         let summary = SessionSummary {
@@ -170,7 +170,9 @@ impl Document {
             let found = presets.get(number).cloned();
             found.ok_or_else(|| Unreadable::Damaged("a preset is missing".to_owned()))
         };
+        let journal = self.journal.map(|number| preset(*number).map(Arc::new))?;
         let history = tree::history(self.nodes, self.cursor, &settings)
+            .filter(|history| journal.is_whole() && history.nodes().all(|node| journal.has(node.trace)))
             .ok_or_else(|| Unreadable::Damaged("the states do not form a walk".to_owned()))?;
         let pins = self.pins.iter().map(|(number, at)| Ok((*number, preset(*at)?)));
         let undo = self.undo.back(preset)?;
@@ -185,7 +187,7 @@ impl Document {
             settled: self.settled,
             pins: pins.collect::<Result<_, Unreadable>>()?,
             look: self.look,
-            journal: self.journal.map(preset)?,
+            journal,
             fitted: self.fitted,
         })
     }

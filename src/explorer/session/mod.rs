@@ -33,4 +33,4 @@ mod unreadable;
 pub use aside::{Aside, SavedFile};
 pub use document::{Document, Ended, SessionSummary, summary};
 pub use snapshot::Snapshot;
-pub use unreadable::Unreadable;
+pub use unreadable::{FORMAT, Unreadable};

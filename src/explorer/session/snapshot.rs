@@ -122,7 +122,7 @@ impl Snapshot {
             settled: model.is_settled() || model.is_tried,
             pins: model.pins.presets().map(|(number, preset)| (number, preset.clone())).collect(),
             look: SessionLook::of(model),
-            journal: model.journal.kept(),
+            journal: model.journal.kept().clone(),
             fitted: model.fitted().is_some(),
         }
     }

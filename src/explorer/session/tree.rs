@@ -4,7 +4,7 @@
 //! what the basis said of it. The state follows from the unknowns and their scales, which are powers of two.
 
 use crate::explorer::history::History;
-use crate::explorer::node::{Node, NodeKind};
+use crate::explorer::node::{Node, NodeKind, Trace};
 use crate::explorer::setting::Setting;
 use pulloff_engine::annuli::MOST_CONTACTS;
 use pulloff_engine::continuation::Columns;
@@ -23,8 +23,6 @@ const MOST: usize = 2 + 2 * MOST_CONTACTS;
 pub(super) struct SavedNode {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     parent: Option<usize>,
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    forward: Option<usize>,
     kind: NodeKind,
     setting: usize,
     step: usize,
@@ -54,14 +52,14 @@ pub(super) struct SavedNode {
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     begins: bool,
     request: u64,
+    trace: Trace,
 }
 
 impl SavedNode {
-    fn of(node: &Node, setting: usize, forward: Option<usize>) -> Self {
+    fn of(node: &Node, setting: usize) -> Self {
         let Node { point, .. } = node;
         Self {
             parent: node.parent,
-            forward,
             kind: node.kind.clone(),
             setting,
             step: node.step,
@@ -80,10 +78,11 @@ impl SavedNode {
             on_path: node.on_path,
             begins: node.begins,
             request: node.request,
+            trace: node.trace,
         }
     }
 
-    fn back(self, settings: &[Arc<Setting>]) -> Option<(Node, Option<usize>)> {
+    fn back(self, settings: &[Arc<Setting>]) -> Option<Node> {
         let setting = Arc::clone(settings.get(self.setting)?);
         let is_whole =
             self.columns.len().is_multiple_of(3) && (FEWEST..=MOST).contains(&(self.columns.len() / 3));
@@ -97,7 +96,7 @@ impl SavedNode {
         if self.on_path.is_none() || contact_radius > 0.0 {
             contacts.check().ok()?;
         }
-        let node = Node {
+        Some(Node {
             parent: self.parent,
             kind: self.kind,
             control: setting.control,
@@ -114,15 +113,14 @@ impl SavedNode {
             on_path: self.on_path,
             begins: self.begins,
             request: self.request,
-        };
-        Some((node, self.forward))
+            trace: self.trace,
+        })
     }
 }
 
 /// The nodes of a tree; `setting` numbers their settings.
 pub(super) fn nodes(history: &History, mut setting: impl FnMut(&Arc<Setting>) -> usize) -> Vec<SavedNode> {
-    let nodes = history.nodes().enumerate();
-    nodes.map(|(at, node)| SavedNode::of(node, setting(&node.setting), history.forward(at))).collect()
+    history.nodes().map(|node| SavedNode::of(node, setting(&node.setting))).collect()
 }
 
 /// The tree of these nodes; `None` if they do not form one.

@@ -75,8 +75,7 @@ fn content(model: &Model, what: Export, path: &str) -> Result<Content, String> {
     } else if !ends_in(path, what.endings()) {
         return Err(format!("the file must end in .{}", what.endings().join(" or .")));
     }
-    let begun =
-        || model.curve.clone().zip(model.journal.start().cloned()).ok_or("there is no curve to export yet");
+    let begun = || model.curve.clone().zip(model.journal.start()).ok_or("there is no curve to export yet");
     Ok(match what {
         Export::Page(page) => Content::Page(page),
         Export::Figure(_) | Export::Screen => return Err(format!("nothing here draws a {}", what.name())),

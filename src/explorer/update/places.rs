@@ -32,7 +32,7 @@ pub(super) fn move_to(model: &mut Model, radius: f64) -> Vec<Effect> {
     if curve.along.is_some() {
         model.tell(Level::Info, "the walk follows the path: this is its nearest state");
     }
-    walk(model, Action::MoveTo(reduced))
+    walk(model, Action::MoveTo { radius: reduced, command: Command::MoveTo(radius) })
 }
 
 /// The walker goes to A, the largest pull of the path.
@@ -73,7 +73,8 @@ pub(in crate::explorer) fn to_largest_pull(model: &mut Model) -> Vec<Effect> {
             }
             _ => None,
         };
-        Action::MoveTo(reduced.unwrap_or(radius / curve.case.units().length))
+        let radius = reduced.unwrap_or(radius / curve.case.units().length);
+        Action::MoveTo { radius, command: Id::MoveTo.into() }
     };
     // Bodies are pulled hardest on their way apart.
     model.inward = true;
@@ -129,7 +130,7 @@ pub(super) fn go_to_event(model: &mut Model) -> Vec<Effect> {
     let nearest = (0..curve.limits.len()).min_by(|a, b| away(a).total_cmp(&away(b)));
     match nearest.filter(|limit| away(limit) <= SAME * radius) {
         Some(limit) => walk(model, Action::MoveToLimit { limit, command }),
-        None => walk(model, Action::MoveTo(radius)),
+        None => walk(model, Action::MoveTo { radius, command }),
     }
 }
 

@@ -2,17 +2,14 @@
 
 use super::curve::solve_again;
 use super::walk::abandon;
-use crate::explorer::availability::{redo, undo};
-use crate::explorer::command::{Command, Id};
+use crate::explorer::command::Id;
 use crate::explorer::effect::Effect;
 use crate::explorer::look::carry_on;
 use crate::explorer::model::{Level, Model};
-use crate::explorer::node::Node;
 use crate::explorer::pins::changes;
-use crate::explorer::requests::{adopt_parameters, change, take_back, want_curve};
+use crate::explorer::requests::{adopt_parameters, change, want_curve};
 use crate::explorer::undo::{SessionPlace, Shelved};
 use crate::store::Loaded;
-use pulloff_engine::quasistatic::State;
 use pulloff_engine::text::greek;
 use std::mem;
 use std::sync::Arc;
@@ -102,82 +99,30 @@ impl Model {
 fn go_to_node(model: &mut Model, place: &SessionPlace) {
     (model.inward, model.length) = (place.inward, place.length);
     model.pins.go_back_to(&place.pins);
-    let (Some(from), Some(to)) = (model.history.cursor(), place.node.and_then(|id| model.history.find(id)))
-    else {
-        return;
-    };
-    let parent = |at: usize| model.history.node(at).and_then(|node| node.parent);
-    let steps = |next: &dyn Fn(usize) -> Option<usize>| {
-        std::iter::successors(Some(from), |at| next(*at)).take(model.history.len()).position(|at| at == to)
-    };
-    let (up, down) = (steps(&parent), steps(&|at| model.history.forward(at)));
-    // As steps of the tree if possible, since a replay numbers its states differently.
-    match (up, down) {
-        (Some(0), _) => {}
-        (Some(count), _) => along(model, Id::Undo, count),
-        (_, Some(count)) => along(model, Id::Redo, count),
-        _ => to_node(model, to),
+    if let Some(to) = place.node.and_then(|id| model.history.find(id)) {
+        to_node(model, to);
     }
 }
 
-/// Moves along the tree by this many states, without their values.
-fn along(model: &mut Model, id: Id, count: usize) {
-    let gone = (0..count).take_while(|_| one_state(model, id)).count();
-    if gone > 0 {
-        let command = Command::Travel { id, count: gone, states: true };
-        model.journal.travelled(&command, model.history.current());
-    }
-}
-
-fn one_state(model: &mut Model, id: Id) -> bool {
-    if id == Id::Redo { model.history.redo() } else { model.history.undo() }
-}
-
-/// Moves back or forward along the walk by this many single states, with their values.
-pub(super) fn by_states(model: &mut Model, id: Id, count: usize) -> Vec<Effect> {
-    let mut effects = Vec::new();
-    let is_there = if id == Id::Undo {
-        model.is_ahead() || model.history.parent().is_some()
-    } else {
-        model.history.redo_target().is_some()
-    };
-    if !is_there {
-        let needs = if id == Id::Undo { undo } else { redo };
-        model.tell(Level::Error, needs(model).err().unwrap_or_default());
-    }
-    for _ in 0..count {
-        if id == Id::Undo && model.is_ahead() {
-            effects.extend(take_back(model));
-            continue;
-        }
-        effects.extend(abandon(model));
-        let before = model.history.cursor();
-        along(model, id, 1);
-        if model.history.cursor() == before {
-            break;
-        }
-        effects.extend(adopt_parameters(model));
-    }
-    effects
-}
-
-/// Back to the node with this number, which comes before the walker's.
+/// Back to the node with this number, which comes before the walker's, with its values.
 pub(super) fn travel_to(model: &mut Model, node: usize) -> Vec<Effect> {
     let mut effects = abandon(model);
-    while model.history.cursor() != Some(node) && model.history.parent().is_some() {
-        along(model, Id::Undo, 1);
-    }
+    to_node(model, node);
     effects.extend(adopt_parameters(model));
     effects
 }
 
 fn to_node(model: &mut Model, node: usize) {
     if model.history.go(node) {
-        let state = model.history.current().map(|node| node.state);
-        if let Some(State { approach, force, contact_radius, .. }) = state {
-            // By its values, since a replay numbers its states differently.
-            let command = Command::GoToState([approach, force, contact_radius]);
-            model.journal.travelled(&command, model.history.current());
+        model.stands();
+    }
+}
+
+impl Model {
+    /// The journal stands where the walker does.
+    pub(super) fn stands(&mut self) {
+        if let Some(node) = self.history.current() {
+            self.journal.go(node.trace);
         }
     }
 }
@@ -191,17 +136,4 @@ pub(super) fn go_to(model: &mut Model, node: usize, numbering: u64) -> Vec<Effec
     to_node(model, node);
     effects.extend(adopt_parameters(model));
     effects
-}
-
-/// To the last state made with these δ, P and s, reduced, bit for bit.
-pub(super) fn go_to_state(model: &mut Model, state: [f64; 3]) -> Vec<Effect> {
-    let is_it = |node: &Node| {
-        let State { approach, force, contact_radius, .. } = node.state;
-        [approach, force, contact_radius].iter().zip(&state).all(|(a, b)| a.total_cmp(b).is_eq())
-    };
-    let found = (0..model.history.len()).rev().find(|at| model.history.node(*at).is_some_and(is_it));
-    let Some(found) = found else {
-        return model.refuse("no state of the walk has these values");
-    };
-    go_to(model, found, model.history.numbering())
 }

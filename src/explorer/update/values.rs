@@ -239,10 +239,10 @@ fn set_in_range(preset: &mut Preset, key: &str, value: Value) -> Result<Option<S
 /// Tries another value for a key while it is being typed, always from the preset before, so that nothing that an
 /// intermediate text lacked is lost.
 pub(super) fn try_out(model: &mut Model, key: &str, text: &str) -> Vec<Effect> {
-    let before = model.untried.clone().unwrap_or_else(|| {
-        let (place, mark, journal) = (model.place(), model.history.mark(), model.journal.clone());
-        Box::new(Untried { place, mark, journal })
-    });
+    let before = model
+        .untried
+        .clone()
+        .unwrap_or_else(|| Box::new(Untried { place: model.place(), mark: model.history.mark() }));
     let effects = set(model, key, text);
     model.untried = Some(before);
     effects
@@ -254,8 +254,8 @@ pub(super) fn untry(model: &mut Model) -> Vec<Effect> {
     let mut effects = stop(model);
     model.walking = None;
     model.history.return_to(before.mark);
-    model.journal = before.journal;
     model.journal.abandoned();
+    model.stands();
     effects.extend(change(model, before.place.preset));
     effects
 }

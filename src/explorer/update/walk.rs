@@ -179,7 +179,6 @@ pub(super) fn walked(
     if !solves && !made.is_empty() {
         model.undo.walked();
     }
-    model.journal.made(made.len());
     let numbering = model.history.numbering();
     let before = solves.then(|| stood_stable(model)).flatten();
     for state in made {
@@ -196,15 +195,12 @@ pub(super) fn walked(
     model.walking = None;
     let is_unsolved = matches!(outcome, WalkOutcome::Stopped(_))
         && model.history.current().is_some_and(|node| !model.is_on_curve(node));
-    model.journal.ended(&outcome, is_unsolved);
-    if model.history.current().is_some_and(|node| node.on_path.is_some()) {
-        model.journal.turned(model.inward);
-    }
     if let WalkOutcome::Stopped(reason) = &outcome
         && is_unsolved
     {
         mark_stale(model, id, reason);
     }
+    model.journal.ended(&outcome);
     let is_there = matches!(outcome, WalkOutcome::Done | WalkOutcome::AtLimit);
     tell_of_end(model, outcome, stepped);
     if let Some(number) = instead_of.filter(|_| is_there) {
@@ -265,7 +261,6 @@ fn tell_of_end(model: &mut Model, outcome: WalkOutcome, stepped: bool) {
         WalkOutcome::Ended(reason) => model.tell(Level::Info, reason),
         WalkOutcome::Stopped(reason) if model.history.current().is_none() => {
             model.inward = true;
-            model.journal.turned(true);
             if let Some(curve) = model.curve.clone() {
                 begin_with_disc(model, &curve);
             }
@@ -294,10 +289,12 @@ fn append(model: &mut Model, made: Node) {
     let beside = made.kind == NodeKind::Solved && again;
     // Continuing the same change is not another step.
     let step = current.map_or(0, |node| node.step + usize::from(!beside));
-    let node = Node { step: if made.begins { 0 } else { step }, ..made };
-    if let Some(inward) = on_path_inward(model, node.on_path) {
+    let on_path = on_path_inward(model, made.on_path);
+    if let Some(inward) = on_path {
         model.inward = inward;
     }
+    let trace = model.journal.made(on_path);
+    let node = Node { step: if made.begins { 0 } else { step }, trace, ..made };
     // Turning a knob further is one change: the states in between are kept, but undo goes back before all of them.
     if beside { model.history.push_beside(node) } else { model.history.push(node) }
 }
@@ -314,7 +311,8 @@ fn mark_stale(model: &mut Model, request: u64, reason: &str) {
     let again = matches!(node.kind, NodeKind::Stale(_) | NodeKind::Solved);
     let step = node.step + usize::from(!again);
     let kind = NodeKind::Stale(reason.to_owned());
-    let stale = Node { kind, step, begins: false, request, ..node };
+    let trace = model.journal.unsolved();
+    let stale = Node { kind, step, begins: false, request, trace, ..node };
     if again { model.history.push_beside(stale) } else { model.history.push(stale) }
 }
 
@@ -381,6 +379,7 @@ fn begin_with_disc(model: &mut Model, curve: &Arc<CurveData>) {
     let Some(point) = drawn.equilibrium.explicit(drawn.outermost()) else { return };
     let (Some(stiffness), Some(admissibility)) = (curve.base.stiffness, curve.base.start) else { return };
     let state = curve.base.curve.equilibrium.state(&point);
+    let trace = model.journal.made(Some(true));
     let control = curve.case.control;
     model.history.push(Node {
         parent: None,
@@ -399,5 +398,6 @@ fn begin_with_disc(model: &mut Model, curve: &Arc<CurveData>) {
         on_path: None,
         begins: true,
         request: 0,
+        trace,
     });
 }
