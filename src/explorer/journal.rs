@@ -1,6 +1,6 @@
 //! How each state of a session came about, and the script that leads to it again.
 //!
-//! A request that makes states has an [`Origin`]: the lines that lead to where it began, and what it does there. With
+//! A request that makes states has an [`WalkOrigin`]: the lines that lead to where it began, and what it does there. With
 //! the number of states it has made, that gives the lines that lead to any of its states, so undo and redo leave none:
 //! wherever the walker goes in the tree, its lines are those of its state. Lines are written when something took effect,
 //! not when it was requested. What a walk depends on besides the walker's state (the values, the direction, the step
@@ -45,8 +45,8 @@ pub struct Beginning<P = Preset> {
 
 /// How the states of a request came about.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub struct Origin<P = Arc<Preset>> {
-    before: Lines<P>,
+pub struct WalkOrigin<P = Arc<Preset>> {
+    before: JournalLines<P>,
     deed: Deed,
     /// With which state the request ended, so that a further step is another one, and the command that ends there too.
     over: Option<(usize, Option<String>)>,
@@ -70,7 +70,7 @@ enum Deed {
 
 /// Lines, and what a replay has set at their end.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub struct Lines<P = Arc<Preset>> {
+pub struct JournalLines<P = Arc<Preset>> {
     /// The number of the last line.
     last: Option<usize>,
     preset: P,
@@ -81,9 +81,9 @@ pub struct Lines<P = Arc<Preset>> {
     broken: Option<String>,
 }
 
-/// A line, and the number of the line before it.
+/// A line, and the number of the one before it.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
-pub struct Line {
+pub struct JournalLine {
     before: Option<usize>,
     text: String,
 }
@@ -105,8 +105,8 @@ struct OpenWalk {
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct KeptJournal<P = Arc<Preset>> {
     start: Option<Box<Beginning<P>>>,
-    lines: Arc<Vec<Line>>,
-    origins: Arc<Vec<Origin<P>>>,
+    lines: Arc<Vec<JournalLine>>,
+    origins: Arc<Vec<WalkOrigin<P>>>,
     /// The place of the walker's state.
     here: Trace,
 }
@@ -127,9 +127,9 @@ impl<P: Clone> KeptJournal<P> {
             .map(|at| Ok(Box::new(Beginning { source: at.source.clone(), preset: preset(&at.preset)? })));
         let start = start.transpose()?;
         let origins = self.origins.iter().map(|origin| {
-            let Lines { last, preset: values, inward, length, broken } = origin.before.clone();
-            let before = Lines { last, preset: preset(&values)?, inward, length, broken };
-            Ok(Origin { before, deed: origin.deed.clone(), over: origin.over.clone() })
+            let JournalLines { last, preset: values, inward, length, broken } = origin.before.clone();
+            let before = JournalLines { last, preset: preset(&values)?, inward, length, broken };
+            Ok(WalkOrigin { before, deed: origin.deed.clone(), over: origin.over.clone() })
         });
         let origins = Arc::new(origins.collect::<Result<_, E>>()?);
         Ok(KeptJournal { start, lines: Arc::clone(&self.lines), origins, here: self.here })
@@ -139,8 +139,8 @@ impl<P: Clone> KeptJournal<P> {
 impl KeptJournal {
     /// Whether its numbers are those of lines and origins that it has, in the order in which they were made.
     pub fn is_whole(&self) -> bool {
-        let ascends = |(at, line): (usize, &Line)| line.before.is_none_or(|before| before < at);
-        let has_line = |origin: &Origin| origin.before.last.is_none_or(|last| last < self.lines.len());
+        let ascends = |(at, line): (usize, &JournalLine)| line.before.is_none_or(|before| before < at);
+        let has_line = |origin: &WalkOrigin| origin.before.last.is_none_or(|last| last < self.lines.len());
         self.lines.iter().enumerate().all(ascends)
             && self.origins.iter().all(has_line)
             && (self.start.is_none() || self.has(self.here))
@@ -194,14 +194,14 @@ impl Journal {
     }
 
     pub(super) fn begin(&mut self, source: Source, preset: Preset) {
-        let before = Lines {
+        let before = JournalLines {
             last: None,
             inward: preset.path.begin == Begin::Disc,
             preset: Arc::new(preset.anywhere()),
             length: FIRST_LENGTH,
             broken: None,
         };
-        let origins = Arc::new(vec![Origin { before, deed: Deed::Values, over: None }]);
+        let origins = Arc::new(vec![WalkOrigin { before, deed: Deed::Values, over: None }]);
         let start = Some(Box::new(Beginning { source, preset: Arc::new(preset) }));
         *self = Self { kept: KeptJournal { start, origins, ..KeptJournal::default() }, ..Self::default() };
     }
@@ -229,7 +229,7 @@ impl Journal {
         if walking.origin.is_some() {
             return Trace { made: from.made + 1, ..from };
         }
-        let is_like = |lines: &Lines, values: &Preset| {
+        let is_like = |lines: &JournalLines, values: &Preset| {
             *lines.preset == *values
                 && (lines.inward, lines.length.to_bits()) == (walking.inward, walking.length.to_bits())
         };
@@ -301,7 +301,7 @@ impl Journal {
         let origins = Arc::make_mut(&mut self.kept.origins);
         // Beyond that, all states share the last one.
         if origins.len() <= LINES {
-            origins.push(Origin { before, deed: deed.unwrap_or(Deed::Values), over: None });
+            origins.push(WalkOrigin { before, deed: deed.unwrap_or(Deed::Values), over: None });
         }
         origins.len() - 1
     }
@@ -349,7 +349,7 @@ impl Journal {
     }
 
     /// The lines that lead to the state at `to`; nothing before the first state.
-    fn lines_to(&mut self, to: Trace) -> Option<Lines> {
+    fn lines_to(&mut self, to: Trace) -> Option<JournalLines> {
         let origin = self.kept.origins.get(to.origin)?;
         let mut lines = origin.left(to);
         let line = match &origin.deed {
@@ -368,7 +368,7 @@ impl Journal {
     }
 
     /// The text of all of `lines`, from the first to the last.
-    fn texts(&self, lines: &Lines) -> Vec<String> {
+    fn texts(&self, lines: &JournalLines) -> Vec<String> {
         let line = |at: usize| self.kept.lines.get(at);
         let back = std::iter::successors(lines.last.and_then(line), |last| last.before.and_then(line));
         let mut texts: Vec<String> = back.map(|line| line.text.clone()).collect();
@@ -377,7 +377,7 @@ impl Journal {
     }
 
     /// Writes what a replay needs to have set before the next line: values, direction, step length.
-    fn sync(&mut self, lines: &mut Lines, values: &Preset, way: Option<(bool, f64)>, may_fail: bool) {
+    fn sync(&mut self, lines: &mut JournalLines, values: &Preset, way: Option<(bool, f64)>, may_fail: bool) {
         // The script may be run from another folder.
         let values = values.anywhere();
         if *lines.preset != values {
@@ -405,28 +405,28 @@ impl Journal {
         }
     }
 
-    fn write_command(&mut self, lines: &mut Lines, command: &Command) {
+    fn write_command(&mut self, lines: &mut JournalLines, command: &Command) {
         match script::line(command) {
             Some(line) => self.write(lines, line),
             None => lines.broken = Some(NOT_ONE_LINE.to_owned()),
         }
     }
 
-    fn write(&mut self, lines: &mut Lines, text: String) {
+    fn write(&mut self, lines: &mut JournalLines, text: String) {
         let all = Arc::make_mut(&mut self.kept.lines);
         if all.len() >= LINES || self.bytes + text.len() > BYTES || text.len() > script::LONGEST {
             lines.broken = Some(TOO_LONG.to_owned());
             return;
         }
         self.bytes += text.len();
-        all.push(Line { before: lines.last, text });
+        all.push(JournalLine { before: lines.last, text });
         lines.last = Some(all.len() - 1);
     }
 }
 
-impl Origin {
+impl WalkOrigin {
     /// What a replay has set at the state at `to`, with the lines before the last one.
-    fn left(&self, to: Trace) -> Lines {
+    fn left(&self, to: Trace) -> JournalLines {
         let mut lines = self.before.clone();
         let whole = if let Deed::Whole { inward, .. } = self.deed { inward } else { None };
         lines.inward = to.inward.or(whole).unwrap_or(lines.inward);
