@@ -89,8 +89,6 @@ pub struct CurveData {
     /// The path of the device, along which the walker goes if the states lie on no single curve, or why there is none.
     pub along: Option<Result<Arc<Path>, String>>,
     pub report: Option<PathReport>,
-    /// The warning about its start, if the path is an unloading from a disc.
-    of_start: Option<String>,
     /// Whether the checks that take longer have been made for the path too.
     checked: bool,
 }
@@ -212,30 +210,20 @@ impl CurveData {
         let outward = outward.map_or_else(Vec::new, |outward| outward.samples);
         let own = outward.len().saturating_sub(1);
         let points = outward[..own].iter().chain(&curve.samples).map(shown).collect();
-        let path = unloading.as_ref().ok().filter(|_| preset.path.begin == Begin::Disc);
-        let of_start = path.and_then(|path| case.warning_of_start(path));
         let report = unloading.as_ref().ok().map(|path| PathReport::new(preset, &case, path));
         let setting = Arc::new(Setting::new(preset.clone(), curve.equilibrium.scales));
         let along = along.map(|path| path.map(Arc::new));
         let checked = case.cohesion.is_some();
-        Ok(Self {
-            base,
-            case,
-            setting,
-            points,
-            limits,
-            other_limits,
-            unloading,
-            along,
-            report,
-            of_start,
-            checked,
-        })
+        Ok(Self { base, case, setting, points, limits, other_limits, unloading, along, report, checked })
     }
 
     /// The warnings about the problem, and about the path where it starts with a disc.
     pub fn warnings(&self) -> Vec<String> {
-        self.base.warnings.iter().cloned().chain(self.of_start.clone()).collect()
+        let path = self.report.as_ref().filter(|_| self.setting.preset.path.begin == Begin::Disc);
+        let own = &self.base.warnings;
+        let of_path =
+            path.map_or(&[][..], |path| &path.warnings).iter().filter(|warning| !own.contains(warning));
+        own.iter().chain(of_path).cloned().collect()
     }
 
     /// The outer edge of the zone (reduced) in this state of the path, where adhesion has a range.

@@ -24,15 +24,22 @@ pub(super) fn mark(model: &mut Model) -> Vec<Effect> {
     let is_it = |name: &&str| named(&preset, name).as_deref() == Some(&*row.key);
     let mut keys: Vec<String> = preset.data.free().filter(|name| !is_it(name)).map(str::to_owned).collect();
     if keys.len() == preset.data.free().count() {
-        let known = pulloff_engine::fit::options::target(&preset, Abscissa::Approach, &row.key);
-        if let Err(FitError::Key { why, .. }) = known {
-            return model.refuse(format!("{} {why}", row.key));
+        if let Some(why) = not_fitted(&preset, &row.key) {
+            return model.refuse(why);
         }
         keys.push(row.key.to_string());
     }
     match preset.set(data::FREE, Value::Text(keys.join(","))) {
         Ok(()) => change(model, preset),
         Err(invalid) => model.refuse(invalid.to_string()),
+    }
+}
+
+/// Why a fit cannot change the value of this name.
+pub(super) fn not_fitted(preset: &Preset, name: &str) -> Option<String> {
+    match pulloff_engine::fit::options::target(preset, Abscissa::Approach, name) {
+        Err(FitError::Key { why, .. }) => Some(format!("{name} {why}")),
+        _ => None,
     }
 }
 

@@ -1,6 +1,6 @@
 //! How each state of a session came about, and the script that leads to it again.
 //!
-//! A request that makes states has an [`WalkOrigin`]: the lines that lead to where it began, and what it does there. With
+//! A request that makes states has a [`WalkOrigin`]: the lines that lead to where it began, and what it does there. With
 //! the number of states it has made, that gives the lines that lead to any of its states, so undo and redo leave none:
 //! wherever the walker goes in the tree, its lines are those of its state. Lines are written when something took effect,
 //! not when it was requested. What a walk depends on besides the walker's state (the values, the direction, the step

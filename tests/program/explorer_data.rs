@@ -276,6 +276,10 @@ fn free_keys_are_marked_in_the_panel_and_what_is_not_determined_is_not_taken() {
     assert_eq!(free(&session), ["gamma", "data.offset"]);
     select(&mut session, "basis.kind");
     assert!(session.status().contains("only those can be fitted"), "{}", session.status());
+    // Typed names are those of keys too.
+    says(&mut session, "free gamma,gama");
+    assert!(session.status().contains("gama"), "{}", session.status());
+    assert_eq!(free(&session), ["gamma", "data.offset"]);
     session.set(data::FREE, "").does(Id::Fit);
     assert!(session.status().starts_with("no value is free to fit: free lets"), "{}", session.status());
     says(&mut session, "data none");

@@ -1,7 +1,9 @@
 //! A whole session in a pseudo-terminal, as a user experiences it: open, step, run to an instability, jump, turn a
 //! knob, save, export, quit, and find the preset again.
 
+use crate::support::home::Home;
 use crate::support::pty::Pty;
+use crate::support::session::Session;
 use std::fs;
 use std::path::Path;
 
@@ -460,4 +462,21 @@ fn what_is_copied_goes_through_the_terminal() {
     pty.keys("q");
     pty.exit_code();
     pty.assert_restored();
+}
+
+#[test]
+fn the_header_warns_of_a_path_as_its_command_does() {
+    let home = Home::new();
+    let set = "path.start_contact_radius=1.2";
+    let told = home.run(&["unload", "wavy-sphere", "--set", set]).err;
+    let session = Session::with("wavy-sphere", &[set]);
+    let warnings = session.model.warnings();
+    assert!(
+        warnings.iter().any(|warning| warning.contains("beyond the radius of curvature")),
+        "{warnings:?}"
+    );
+    for warning in &warnings {
+        assert!(told.contains(warning), "{warning}\n{told}");
+    }
+    assert_eq!(told.matches("warning: ").count(), warnings.len(), "{told}");
 }

@@ -2,6 +2,7 @@
 
 use crate::explorer::command::{Assignment, Id};
 use crate::explorer::effect::Effect;
+use crate::explorer::fit::not_fitted;
 use crate::explorer::job::Job;
 use crate::explorer::model::{Level, Model, Untried};
 use crate::explorer::nudge::{Amount, nudge};
@@ -316,6 +317,11 @@ pub(super) fn rows_came(model: &mut Model, rows: Arc<ProfileRows>) -> Vec<Effect
 /// The outcome of assignments, after a file was read or at once: reports a measured curve and what was found in it.
 pub(super) fn assigned(model: &mut Model, preset: Preset, assignments: &[Assignment]) -> Vec<Effect> {
     if let Some(why) = loses_points(model, &preset) {
+        return model.refuse(why);
+    }
+    let is_new = preset.data.free != model.preset.data.free;
+    let refused = preset.data.free().filter(|_| is_new).find_map(|name| not_fitted(&preset, name));
+    if let Some(why) = refused {
         return model.refuse(why);
     }
     if preset == *before_tried(model) {
