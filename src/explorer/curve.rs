@@ -217,13 +217,10 @@ impl CurveData {
         Ok(Self { base, case, setting, points, limits, other_limits, unloading, along, report, checked })
     }
 
-    /// The warnings about the problem, and about the path where it starts with a disc.
+    /// The warnings about the path where it starts with a disc, and otherwise about the problem.
     pub fn warnings(&self) -> Vec<String> {
         let path = self.report.as_ref().filter(|_| self.setting.preset.path.begin == Begin::Disc);
-        let own = &self.base.warnings;
-        let of_path =
-            path.map_or(&[][..], |path| &path.warnings).iter().filter(|warning| !own.contains(warning));
-        own.iter().chain(of_path).cloned().collect()
+        path.map_or(&self.base.warnings, |path| &path.warnings).clone()
     }
 
     /// The outer edge of the zone (reduced) in this state of the path, where adhesion has a range.

@@ -138,7 +138,10 @@ pub(super) fn fit(model: &mut Model) -> Vec<Effect> {
 /// Adopts what a fit found.
 fn taken(model: &mut Model, found: &Arc<Fit>) -> Vec<Effect> {
     if let Some(direction) = &found.direction {
-        return model.refuse(format!("not determined, so not taken: {direction}"));
+        let stays = model.fitted().is_some();
+        let stays =
+            if stays { "; the values are still those of the last fit, and so is its report" } else { "" };
+        return model.refuse(format!("not determined, so not taken: {direction}{stays}"));
     }
     model.tell(if found.verdict == Verdict::Describes { Level::Info } else { Level::Error }, told(found));
     model.fit = Some(Arc::clone(found));

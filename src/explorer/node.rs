@@ -78,6 +78,17 @@ pub struct Node {
 }
 
 impl Node {
+    /// The state as it is shown, in the user's units: what rounding leaves of a force or an approach of zero is zero.
+    pub fn seen(&self) -> State {
+        /// In units of the scales of the curve.
+        const NOISE: f64 = 1e-13;
+        let scales = &self.setting.scales;
+        let clean = |x: f64, scale: f64| if x.abs() < NOISE * scale { 0.0 } else { x };
+        let (approach, force) = (self.state.approach, self.state.force);
+        let (approach, force) = (clean(approach, scales.approach), clean(force, scales.force));
+        State { approach, force, ..self.state }.in_units(self.setting.units())
+    }
+
     /// Whether there is more than a disc.
     pub fn has_rings(&self) -> bool {
         edges::has_rings(&self.point)

@@ -13,7 +13,7 @@ use std::ops::RangeInclusive;
 /// How far one key press goes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Amount {
-    /// The third digit; for the rate of a pull, a third of a decade.
+    /// The third digit.
     Third,
     /// The second digit; for the rate of a pull, a third of a decade.
     Second,
@@ -68,7 +68,7 @@ pub fn nudge(
         (_, value) if matches!(&*row.key, data::OFFSET | data::BASELINE) => {
             Value::Number(tidy(shifted(preset, &row.key, value, if up { share } else { -share })?))
         }
-        (Kind::Positive, Some(Value::Number(x))) if row.key == RATE => {
+        (Kind::Positive, Some(Value::Number(x))) if row.key == RATE && amount != Amount::Third => {
             let thirds = if amount == Amount::First { 3.0 } else { 1.0 };
             Value::Number(tidy(by_thirds(x, if up { thirds } else { -thirds })))
         }

@@ -265,16 +265,20 @@ fn labelled_in(row: &Row, value: &Value, units: &UnitSystem, (between, digits): 
     format!("{}{between}{shown}", row.label)
 }
 
-/// The values of `pinned` that differ from those of `now`, as labels and values; if there are none, those that only
-/// `now` has. Only the first few.
+/// The values of `pinned` that differ from those of `now`, as labels and values, and those that only `now` has. Only
+/// the first few.
 pub fn name(pinned: &Preset, now: &Preset) -> String {
-    let lacking = || {
-        let mut others = differences(now, pinned);
-        // The units of the screen change no curve.
-        others.retain(|(row, _)| !row.key.starts_with("display."));
-        named(&others, &now.units).map(|lacking| format!("without {lacking}"))
-    };
-    named(&differences(pinned, now), &now.units).or_else(lacking).unwrap_or_else(|| "same values".to_owned())
+    let own = named(&differences(pinned, now), &now.units);
+    let mut others = differences(now, pinned);
+    // The units of the screen change no curve; another gap has other values anyway, and another start takes its place.
+    others.retain(|(row, _)| match row.table() {
+        _ if own.is_none() => !row.key.starts_with("display."),
+        Some("material" | "edge") => row.is_optional() && pinned.get(&row.key).is_none(),
+        _ => false,
+    });
+    let lacking = named(&others, &now.units).map(|lacking| format!("without {lacking}"));
+    let told: Vec<String> = own.into_iter().chain(lacking).collect();
+    if told.is_empty() { "same values".to_owned() } else { told.join(", ") }
 }
 
 /// Each value in which `after` differs from `before`, as label and both values: `A 0.0025 → 0.0031`.
@@ -287,7 +291,13 @@ pub fn changes(before: &Preset, after: &Preset) -> Vec<String> {
     let told = differences(after, before).into_iter().chain(gone).map(|(row, value)| {
         let said =
             |value: &Value, preset: &Preset, digits| labelled_in(&row, value, &preset.units, (" ", digits));
-        let Some(was) = before.get(&row.key) else { return said(&value, after, 4) };
+        let Some(was) = before.get(&row.key) else {
+            let now = said(&value, after, 4);
+            return match now.strip_prefix(&*row.label).filter(|_| row.is_optional()) {
+                Some(value) => format!("{} {NONE} →{value}", row.label),
+                None => now,
+            };
+        };
         // As many digits as needed to tell them apart.
         let both = [4, 7, 10, 17].map(|digits| (said(&was, before, digits), said(&value, after, digits)));
         let (was, now) = both.iter().find(|(was, now)| was != now).unwrap_or(&both[0]);
@@ -378,6 +388,9 @@ mod tests {
             ])
             .unwrap();
         assert_eq!(name(&now, &with_range), "without adhesion dugdale, sigma0 1");
+        let closing = preset(&[("material.closing_work_of_adhesion", "0.001"), ("path.control", "force")]);
+        assert_eq!(name(&now, &closing), "control displacement, without gamma_a 0.001");
+        assert_eq!(super::changes(&now, &closing), ["gamma_a none → 0.001", "control displacement → force"]);
     }
 
     #[test]

@@ -246,16 +246,21 @@ fn columns(spec: &Spec) -> Vec<ColumnInfo> {
 impl ColumnInfo {
     /// The title of an axis: the meaning in words, the symbol, and the unit in which it is shown.
     pub fn title(&self) -> String {
+        /// As many letters fit beside the shorter side of a figure.
+        const ROOM: usize = 32;
         // A key of a preset contains a dot, and its meaning describes it; the name of a quantity describes itself.
-        let words = if self.name.contains('.') {
-            headline(&self.meaning).to_owned()
-        } else {
-            self.name.replace("pull_off", "pull-off").replace('_', " ")
-        };
-        let words = if words.is_empty() { self.name.clone() } else { words };
-        let symbol = self.symbol.as_ref().map_or_else(String::new, |symbol| format!(", {symbol}"));
+        let of_name = self.name.rsplit('.').next().unwrap_or(&self.name);
+        let of_name = of_name.replace("pull_off", "pull-off").replace('_', " ");
+        let meaning = if self.name.contains('.') { headline(&self.meaning) } else { "" };
         let unit = self.shown.clone().or_else(|| self.unit.as_ref().map(|unit| unit.replace("^2", "²")));
-        format!("{words}{symbol}{}", unit.map_or_else(String::new, |unit| format!(" ({unit})")))
+        let unit = unit.map_or_else(String::new, |unit| format!(" ({unit})"));
+        let symbol = self.symbol.as_deref().unwrap_or_default();
+        let behind = if symbol.is_empty() { String::new() } else { format!(", {symbol}") };
+        let worded = [meaning, &of_name].into_iter().filter(|words| !words.is_empty());
+        let mut titles = worded.map(|words| format!("{words}{behind}{unit}")).collect::<Vec<_>>();
+        titles.push(format!("{}{unit}", if symbol.is_empty() { &of_name } else { symbol }));
+        let fitting = titles.iter().position(|title| title.chars().count() <= ROOM);
+        titles.swap_remove(fitting.unwrap_or(titles.len() - 1))
     }
 
     /// A number of the column in the unit in which it is shown.

@@ -186,14 +186,16 @@ fn outcome(report: &PathReport) -> String {
     let has_zone = report.events.iter().any(|event| event.kind == EventKind::SnapOff.name());
     let last = if has_zone { "the snap-off" } else { "the last contact" };
     let is_apart = report.events.last().is_some_and(|event| event.after.is_none());
+    // What a dead band loses is not among it.
+    let lost_energy = if totals.dead_band.is_some() { "energy lost in jumps" } else { "energy lost" };
     let _ = match totals.dissipated {
-        None if !is_apart => writeln!(text, "energy lost up to there: {}", energy(before)),
+        None if !is_apart => writeln!(text, "{lost_energy} up to there: {}", energy(before)),
         Some(lost) => {
-            writeln!(text, "energy lost: {}, including {} before {last}", energy(lost), energy(before))
+            writeln!(text, "{lost_energy}: {}, including {} before {last}", energy(lost), energy(before))
         }
         None => writeln!(
             text,
-            "energy lost before {last}: {}; under a dead load the loss at {last} has no bound: the bodies fall apart \
+            "{lost_energy} before {last}: {}; under a dead load the loss at {last} has no bound: the bodies fall apart \
              for ever",
             energy(before)
         ),

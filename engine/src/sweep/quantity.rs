@@ -100,7 +100,7 @@ quantities! {
         Stage::Unloading(|path| path.snap_off(|state| state.approach));
     "inadmissible_share" "" Number "share of the unloading of one disc, by contact radius, on which the next crest would already touch":
         Stage::Passed;
-    "cycle_loss" "" Energy "energy lost in the loop of loading and unloading; empty under a dead load":
+    "cycle_loss" "" Energy "energy lost in the loop of loading and unloading, in its jumps and in a dead band; empty under a dead load":
         Stage::Loop(OnPath::loss);
     "cycle_largest_pull" "P" Force "smallest force of that loop, negative: its largest pull; 0 or empty where nothing pulls":
         Stage::Loop(OnPath::largest_pull);

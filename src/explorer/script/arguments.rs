@@ -8,7 +8,8 @@ use crate::explorer::command::{Assignment, Command, Id, LENGTHS, MOST_STEPS};
 use crate::explorer::export::{Export, ends_in};
 use crate::explorer::pins;
 use crate::explorer::view::{Home, Overlay, View};
-use pulloff_engine::preset::Key;
+use pulloff_engine::preset::schema::Kind;
+use pulloff_engine::preset::{Key, PARAMETERS, Parameter};
 use pulloff_engine::sweep::QuantityColumn;
 use pulloff_engine::text::{closest, quote};
 
@@ -148,6 +149,10 @@ impl<'a> Rest<'a> {
                 Some((_, number)) if is_value(word) && ends_in_number(number) => {
                     *number = format!("{number} {}", word.text);
                 }
+                // A further word of a text.
+                Some((key, text)) if is_value(word) && takes_text(key) => {
+                    *text = format!("{text} {}", word.text);
+                }
                 // A value after its key, as behind `:` without `set`.
                 None if is_value(word) && self.words.first().is_some_and(is_value) => {
                     let value = self.next().map_or("", |value| &value.text);
@@ -163,6 +168,12 @@ impl<'a> Rest<'a> {
 /// Whether a word is no assignment of its own.
 fn is_value(word: &Word) -> bool {
     !word.text.contains('=')
+}
+
+/// Whether any text may be the value of a key, which may be given by the last part of its name.
+fn takes_text(key: &str) -> bool {
+    let is_it = |row: &Parameter| row.key == key || row.key.rsplit('.').next() == Some(key);
+    PARAMETERS.iter().any(|row| is_it(row) && matches!(row.kind, Kind::Text { .. }))
 }
 
 /// Whether a value is a number without a unit, or ends with one after `=`.

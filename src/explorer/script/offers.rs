@@ -138,7 +138,7 @@ pub(in crate::explorer) fn branches_of(typing: &Typing<'_>) -> Vec<Offer> {
     let history = &typing.model.history;
     let all = branches::branches(history).into_iter().filter_map(|branch| {
         let node = branch.last()?;
-        let state = node.state.in_units(node.setting.units());
+        let state = node.seen();
         let value =
             |quantity, x| with_unit(&node.setting.preset.units, quantity, x, false, |x| significant(x, 4));
         let place = if node.is_apart() {

@@ -67,7 +67,12 @@ pub fn palette(
     let compared = |entry: &PaletteEntry| {
         rank(&[entry.line[start..].to_lowercase(), entry.says.to_lowercase(), String::new()], word)
     };
-    ranked(entries, compared).into_iter().map(|(_, entry)| entry).collect()
+    // What has the word only in its description may not be what was meant: it is typed for a look first.
+    let offered = |(rank, entry): (u8, PaletteEntry)| PaletteEntry {
+        is_whole: entry.is_whole && rank < DESCRIBED,
+        ..entry
+    };
+    ranked(entries, compared).into_iter().map(offered).collect()
 }
 
 /// All commands, those of `first` before the others.
@@ -154,6 +159,9 @@ fn ranked<R: Ord + Copy>(
     found
 }
 
+/// The rank of a word with which one of the description begins.
+const DESCRIBED: u8 = 4;
+
 /// The rank of a word that is only found within another one of the description.
 const WITHIN: u8 = 5;
 
@@ -174,7 +182,7 @@ fn rank([line, says, words]: &[String; 3], word: &str) -> Option<u8> {
     } else if line.contains(word) {
         Some(3)
     } else if begins(says) {
-        Some(4)
+        Some(DESCRIBED)
     } else {
         says.contains(word).then_some(WITHIN)
     }
@@ -236,6 +244,7 @@ mod tests {
             ("map gap.amplitude fo", "map gap.amplitude force", true),
             ("export figure x.svg con", "export figure x.svg contact", true),
             ("control f", "control force", true),
+            ("study gamma", "study critical_force", false),
             ("data mi", "data mine.csv", true),
             ("data cu", "data curves/", false),
         ] {

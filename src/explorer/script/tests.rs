@@ -106,6 +106,10 @@ fn a_script_is_read_with_comments_quotes_and_synonyms() {
     );
     // A value may follow its key, and its unit that.
     assert_eq!(parse("set gap.wavelength 3 um").unwrap(), Some(set(&[("gap.wavelength", "3 um")])));
+    let steps = "to 0.05 at 0.01; hold 5; apart at 0.1";
+    for line in [format!("set path.steps={steps} title=x"), format!("set path.steps {steps} title=x")] {
+        assert_eq!(parse(&line).unwrap(), Some(set(&[("path.steps", steps), ("title", "x")])));
+    }
     assert!(lines.iter().all(|line| line.may_fail == (line.number == 6)));
 }
 
@@ -119,7 +123,7 @@ fn a_fault_names_line_column_word_and_what_is_allowed() {
         ("set gap.amplitud=1", "t:1:5: unknown key gap.amplitud; did you mean gap.amplitude?"),
         ("set amplitud=1", "t:1:5: unknown key amplitud; did you mean gap.amplitude?"),
         ("open fig-9 amplitude=1", "t:1:12: unknown key amplitude; did you mean gap.amplitude?"),
-        ("set title=a b", "t:1:13: \"b\" is not KEY=VALUE"),
+        ("set gap.shape=cone b", "t:1:20: \"b\" is not KEY=VALUE"),
         (
             "export curv x.csv",
             "t:1:8: no document is called \"curv\": it is curve, walk, events, script, pull, study, figure, screen; did you mean curve?",

@@ -224,7 +224,7 @@ pub(super) fn walked(
 fn tell_of_present(model: &mut Model, number: usize) {
     let Some(node) = model.walker() else { return };
     let preset = &node.setting.preset;
-    let state = node.state.in_units(node.setting.units());
+    let state = node.seen();
     let shown = |quantity, x| with_unit(&preset.units, quantity, x, false, |x| significant(x, 5));
     let critical = critical_force(preset).filter(|_| model.axes == Axes::Reduced);
     let force = critical.map_or_else(

@@ -26,7 +26,7 @@ const ROUNDING: f64 = 1e-10;
 
 /// The state of a node in the user's units.
 fn shown_state(node: &Node) -> State {
-    let mut state = node.state.in_units(node.setting.units());
+    let mut state = node.seen();
     if state.approach.abs() <= NO_APPROACH * state.contact_radius {
         state.approach = 0.0;
     }

@@ -95,7 +95,7 @@ fn divisor(path: &[(usize, &Node)]) -> Option<f64> {
 /// The largest δ, P and s of the walk by their size, in its own units.
 fn largest(path: &[(usize, &Node)]) -> [f64; 3] {
     path.iter().filter(|(_, node)| !node.is_apart()).fold([0.0; 3], |largest, (_, node)| {
-        let state = node.state.in_units(node.setting.units());
+        let state = node.seen();
         let of = [state.approach, state.force, state.contact_radius];
         std::array::from_fn(|i| f64::max(largest[i], of[i].abs()))
     })
@@ -105,7 +105,7 @@ fn largest(path: &[(usize, &Node)]) -> [f64; 3] {
 /// go up to `largest`.
 fn row(node: &Node, before: Option<&Node>, critical: Option<f64>, largest: [f64; 3]) -> String {
     let setting = &node.setting;
-    let state = node.state.in_units(setting.units());
+    let state = node.seen();
     let units = &setting.preset.units;
     let cell = |quantity, x, digits, largest| {
         let [x, largest] = [x, largest].map(|x| units.shown(quantity, x).number);

@@ -609,7 +609,7 @@ fn a_warning_cut_in_the_header_is_whole_in_the_help() {
         let effects = update(&mut screen.app.model, Command::Set { key: key.into(), text: text.to_owned() });
         screen.settle(effects);
     }
-    let warning = screen.app.model.curve.as_ref().unwrap().base.warnings[0].clone();
+    let warning = screen.app.model.warnings()[0].clone();
     let text = screen.text(80, 24);
     assert!(text.lines().next().unwrap().ends_with("... ?: all"), "{text}");
     assert!(!text.contains(&warning));
