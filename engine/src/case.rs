@@ -18,12 +18,12 @@ use crate::problem::{
 use crate::progress::{Progress, Stopped, Unwatched};
 use crate::quasistatic::admissible::{Judge, falls};
 use crate::quasistatic::beyond::{is_smaller_beyond, is_smaller_beyond_zone};
+use crate::quasistatic::monotone::weighted;
 use crate::quasistatic::path::{
-    Losses, Path, PathError, PathSetting, ZoneStartError, Zones, cycle, cycle_in_zone, start_in_zone, unload,
-    unload_in_zone,
+    Losses, Path, PathError, PathSetting, PathState, PathStop, ZoneStartError, Zones, cycle, cycle_in_zone,
+    start_in_zone, unload, unload_in_zone,
 };
-use crate::quasistatic::start::StartError;
-use crate::quasistatic::start::contact_radius;
+use crate::quasistatic::start::{StartError, contact_radius, end_contact_radius};
 use crate::quasistatic::{Curve, CurveStop, Detail};
 use crate::ritz::{Rings, RingsError};
 use crate::theory::jkr::Jkr;
@@ -199,7 +199,10 @@ impl Case {
             // However the start was given, from here on it decides how far the basis reaches.
             basis = Arc::new(ExactBasis::new(Arc::clone(&table), start));
         }
-        let end = preset.end_contact_radius(start * units.length) / units.length;
+        let end = match preset.path.end_contact_radius {
+            Some(end) => end / units.length,
+            None => end_contact_radius(&reduced, &table, start, progress)?,
+        };
         if end >= start {
             return Err(CaseError::EndOutsideStart { end, start, printer: Box::new(printer) });
         }
@@ -487,6 +490,25 @@ impl Case {
         }
         of == Control::Force && path.pulls_most_at_start()
             || is_smaller_beyond(&self.table, &self.reduced, [begun, least.contact_radius], of, held)
+    }
+
+    /// A warning, if the largest pull of an unloading is where it ends in contact: it would pull more further on.
+    pub fn warning_of_end(&self, path: &Path) -> Option<String> {
+        let end = said(&self.shown, Quantity::Length, self.end * self.units().length);
+        self.ends_early(path, Control::Force).then(|| {
+            format!(
+                "the force still falls where the path ends, at the contact radius {end}: the largest pull is beyond it; \
+                 path.end_contact_radius = none goes on to the last contact"
+            )
+        })
+    }
+
+    /// Whether an unloading ends in contact while its force, or its approach, as `of` says, still falls.
+    pub fn ends_early(&self, path: &Path, of: Control) -> bool {
+        let value = |state: &PathState| weighted(of, state.approach, state.force);
+        let least = path.states.iter().map(value).fold(f64::INFINITY, f64::min);
+        let is_last = path.states.last().is_some_and(|last| value(last) <= least);
+        path.stop == PathStop::End && path.turn.is_none() && self.reduced.work_of_adhesion > 0.0 && is_last
     }
 
     /// A warning, if a contact of radius `largest` (reduced) is larger than the bodies are round.

@@ -10,6 +10,7 @@ use pulloff_engine::problem::Control;
 use pulloff_engine::progress::Unwatched;
 use pulloff_engine::quasistatic::path::PathSetting;
 use pulloff_engine::theory::{Exact, unloading};
+use pulloff_engine::{Extent, PathReport};
 use std::sync::Arc;
 
 const NAMES: [&str; 7] =
@@ -140,6 +141,37 @@ fn a_start_by_approach_or_force_stays_where_the_gap_is_known() {
             );
             let refused = Case::new(&far).unwrap_err().to_string();
             assert!(refused.contains("the gap is known only up to the radius"), "{name}, {key}: {refused}");
+        }
+    }
+}
+
+#[test]
+fn a_path_without_an_end_of_its_own_goes_on_to_the_last_contact() {
+    // From soft spheres, whose pull-off is far out, to stiff ones, whose contact is tiny beside the start.
+    for modulus in [1e4, 1e7, 1e10, 1e13, 1e16] {
+        for control in ["displacement", "force", "stiffness=100"] {
+            for (shape, end) in [("sphere", None), ("sphere", Some("0.3 mm")), ("exact-sphere", None)] {
+                let text = format!(
+                    "format = 1\nunits = \"SI\"\n[material]\neffective_modulus = {modulus}\nwork_of_adhesion = 0.05\n\
+                     [gap]\nshape = \"{shape}\"\nradius_of_curvature = \"1 mm\"\n"
+                );
+                let mut preset = read("t", &text).unwrap();
+                preset.assign("path.control", control).unwrap();
+                if let Some(end) = end {
+                    preset.assign("path.end_contact_radius", end).unwrap();
+                }
+                let report = PathReport::unload(&preset, Extent::default(), &Unwatched).unwrap();
+                let is_apart = report.events.last().is_some_and(|event| event.after.is_none());
+                let pull = report.totals.largest_pull.as_ref().map_or(0.0, |at| -at.force);
+                let critical = 1.5 * std::f64::consts::PI * 0.05 * 1e-3;
+                let told = format!("{modulus} {control} {shape}: {pull} {critical} {:?}", report.warnings);
+                let is_early = report.warnings.iter().any(|warning| warning.contains("still falls where"));
+                assert_eq!(is_early, !is_apart, "{told}");
+                if is_apart && shape == "sphere" {
+                    assert!((pull / critical - 1.0).abs() < 1e-6, "{told}");
+                }
+                assert!(is_apart || end.is_some(), "{told}");
+            }
         }
     }
 }

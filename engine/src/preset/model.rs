@@ -15,7 +15,7 @@ pub(super) use keys::unknown_key;
 use super::data::DataSpec;
 use super::edge::EdgeSpec;
 use super::measured::{self, Files};
-use super::schema::{END_OVER_START, START_KEYS, TURN_KEYS};
+use super::schema::{START_KEYS, TURN_KEYS};
 use crate::gap::Shape;
 use crate::gap::shapes::MeasuredGap;
 use crate::problem::Turn;
@@ -85,8 +85,8 @@ pub struct PathSpec {
     pub control: Control,
     /// The state at which the path starts.
     pub start: Start,
-    /// The contact radius at which the path ends; `None` leaves it to follow the start
-    /// (see [`Preset::end_contact_radius`]).
+    /// The contact radius at which the path ends; `None` leaves it to follow the start and the last stable contact
+    /// (see [`end_contact_radius`](crate::quasistatic::start::end_contact_radius)).
     pub end_contact_radius: Option<f64>,
     /// Where a walk by hand begins.
     pub begin: Begin,
@@ -169,12 +169,6 @@ impl Preset {
     /// The tension and the range of the adhesion, if it has a range.
     pub fn cohesion(&self) -> Option<Cohesion> {
         self.material.adhesion.cohesion(self.material.work_of_adhesion, self.range_of_action())
-    }
-
-    /// The contact radius at which the path ends, given that it starts at `start_contact_radius`: the one in the
-    /// preset, or a fixed fraction of the start.
-    pub fn end_contact_radius(&self, start_contact_radius: f64) -> f64 {
-        self.path.end_contact_radius.unwrap_or(END_OVER_START * start_contact_radius)
     }
 
     /// The same preset for a file in `folder`: the file names of its profile and of its measured curve become relative

@@ -20,8 +20,6 @@ pub const SMALLEST: f64 = 1e-30;
 pub const LARGEST: f64 = 1e30;
 /// The contact radius at which a path starts if none is given, over the radius of curvature.
 pub const START_OVER_CURVATURE: f64 = 0.5;
-/// The contact radius at which a path ends if none is given, over the one where it starts.
-pub const END_OVER_START: f64 = 0.004;
 /// The largest contact radius accepted, over the radius of curvature: further out the paraboloid has no meaning.
 pub const RADIUS_OVER_CURVATURE: f64 = 10.0;
 /// The three ways to give the start of a path; a preset has exactly one.

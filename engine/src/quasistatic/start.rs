@@ -1,7 +1,7 @@
 //! The state a path starts from.
 
 use super::monotone::Monotone;
-use crate::disc::Basis;
+use crate::disc::{Basis, ExactSolution, Solution, Table, TableError};
 use crate::elementary::cbrt;
 use crate::problem::{Control, Printer, Reduced, Start};
 use crate::progress::{Progress, Stopped};
@@ -146,4 +146,36 @@ pub fn contact_radius(
         }
         reach = (2.0 * reach).min(most);
     }
+}
+
+/// The contact radius, a reduced length, at which a path of one disc ends that starts at `start`, if none is given: a
+/// fixed fraction of the start, or less where the contact is still stable there in fixed grips. Below it, the disc
+/// only shrinks further apart.
+///
+/// # Errors
+/// [`Stopped`] if `progress` said stop.
+pub fn end_contact_radius(
+    problem: &Reduced,
+    table: &Table,
+    start: f64,
+    progress: &dyn Progress,
+) -> Result<f64, Stopped> {
+    /// Of the start.
+    const SHARE: f64 = 0.004;
+    /// Of the radius below which nothing is stable.
+    const BELOW: f64 = 0.5;
+    let usual = SHARE * start;
+    let panels = match table.up_to_while(usual, 0, progress) {
+        Err(TableError::Stopped(stopped)) => return Err(stopped),
+        // Whoever needs the gap up to the start says why it has no table.
+        Err(_) => return Ok(usual),
+        Ok(panels) => panels,
+    };
+    let exact = ExactSolution::new(panels, problem.work_of_adhesion);
+    let last = exact.place(usual).map_or(exact.len(), |place| place.panel + 1);
+    let monotone = Monotone::on(&exact, Control::Displacement, 0..last);
+    let rising = monotone.stretches.iter().find(|stretch| stretch.rising);
+    // Without adhesion, the contact is stable until it vanishes.
+    let unstable = rising.map_or(f64::INFINITY, |stretch| stretch.radii[0]);
+    Ok(if unstable > 0.0 { usual.min(BELOW * unstable) } else { usual })
 }

@@ -331,6 +331,7 @@ impl PathReport {
         let radii = path.states.iter().map(|state| state.contact_radius);
         warnings.extend(case.warning_of_size(radii.fold(begins, f64::max)));
         warnings.extend(case.warning_of_start(path));
+        warnings.extend(case.warning_of_end(path));
         warnings.extend(path.warnings.iter().map(|w| w.words(&printer)));
         let mut notes = if is_loop || in_zone { problem_notes(case) } else { case.notes(begins) };
         notes.extend(note_of_range(preset, case));

@@ -14,7 +14,7 @@ use crate::preset::{Invalid, Preset};
 use crate::problem::{Control, Reduced, Start, Units};
 use crate::progress::{Stopped, Unwatched};
 use crate::quasistatic::monotone::weighted;
-use crate::quasistatic::start::{StartError, contact_radius};
+use crate::quasistatic::start::{StartError, contact_radius, end_contact_radius};
 use std::sync::{Arc, Mutex, OnceLock, PoisonError};
 
 /// The values of the numbers left open, as shares of their axes.
@@ -215,7 +215,7 @@ impl Family {
             family.own = Some(family.table(&family.base)?);
         }
         let start = family.start_of(&family.base, family.base.reduced.work_of_adhesion)?;
-        family.radii = [preset.end_contact_radius(start * length) / length, start];
+        family.radii = [family.end_of(&family.base, start)?, start];
         family.check_features()?;
         Ok(family)
     }
@@ -370,6 +370,14 @@ impl Family {
         let basis = ExactBasis::new(self.table(made)?, self.reach(&made.preset));
         let reduced = Reduced { work_of_adhesion, ..reduced };
         Ok(contact_radius(&reduced, &basis, wanted, &Unwatched)?)
+    }
+
+    /// The contact radius at which the path of a member ends that starts at `start`.
+    fn end_of(&self, made: &MemberCase, start: f64) -> Result<f64, FamilyError> {
+        match made.preset.path.end_contact_radius {
+            Some(end) => Ok(end / self.length),
+            None => Ok(end_contact_radius(&made.reduced, &*self.table(made)?, start, &Unwatched)?),
+        }
     }
 
     /// How an axis enters.
@@ -600,7 +608,7 @@ impl Member<'_> {
         let family = self.family;
         let made = family.made(at)?;
         let start = family.start_of(&made, self.work_of_adhesion)?;
-        let end = made.preset.end_contact_radius(start * family.length) / family.length;
+        let end = family.end_of(&made, start)?;
         let reduced = Reduced { work_of_adhesion: self.work_of_adhesion, ..made.reduced.clone() };
         Ok((ExactBasis::new(family.table(&made)?, start), reduced, [end, start]))
     }

@@ -24,7 +24,7 @@ pub struct Fault {
 }
 
 /// All reasons.
-pub const REASONS: [&str; 13] = [
+pub const REASONS: [&str; 14] = [
     "refused value",
     "no basis",
     "no start",
@@ -38,6 +38,7 @@ pub const REASONS: [&str; 13] = [
     "members",
     "no pull",
     "range",
+    "early end",
 ];
 
 impl Fault {
@@ -126,6 +127,15 @@ impl Fault {
         Self::new(
             REASONS[5],
             "a contact larger than that at the start has, or may have, a smaller value: start further out",
+        )
+    }
+
+    /// A path that ends in contact while something still falls.
+    #[must_use]
+    pub fn early_end() -> Self {
+        Self::new(
+            REASONS[13],
+            "it still falls where the path ends: decrease path.end_contact_radius, or set it to none",
         )
     }
 

@@ -101,6 +101,9 @@ impl Workings<'_> {
                 if path.is_some_and(|path| case.is_cut_off(path, what)) {
                     return Err(Fault::small_start());
                 }
+                if path.is_some_and(|path| case.ends_early(path, what)) {
+                    return Err(Fault::early_end());
+                }
                 Ok(found)
             }
             Stage::Passed => self.inadmissible_share(self.control(column)?),

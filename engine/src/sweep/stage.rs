@@ -57,6 +57,8 @@ pub(super) struct CurveMinima {
 /// The state of the curve at which the controlled quantity is smallest.
 struct LeastState {
     state: State,
+    /// Whether it is the innermost state.
+    is_at_end: bool,
     is_cut_off: OnceCell<bool>,
     control: Control,
 }
@@ -234,7 +236,10 @@ impl CurveMinima {
         let mut curve = case.curve_in(Detail::Borders, progress)?;
         let least = [Control::Force, Control::Displacement].map(|control| {
             curve.hold(control);
-            LeastState { state: least(&curve, control), is_cut_off: OnceCell::new(), control }
+            let state = least(&curve, control);
+            let is_at_end =
+                curve.samples.last().is_some_and(|end| state.contact_radius <= end.contact_radius);
+            LeastState { state, is_at_end, is_cut_off: OnceCell::new(), control }
         });
         let critical_force = case.critical_force().map(|force| force / case.units().force);
         Ok(Self { curve, least, critical_force })
@@ -260,14 +265,20 @@ impl CurveMinima {
 
     /// The state of smallest force, or of smallest approach, among all contacts and not only those up to the start.
     fn smallest(&self, which: usize) -> Result<&State, Fault> {
-        let LeastState { state, is_cut_off, control } = &self.least[which];
+        let LeastState { state, is_at_end, is_cut_off, control } = &self.least[which];
         let is_cut_off = is_cut_off.get_or_init(|| {
             let (start, Equilibrium { problem, table, .. }) =
                 (self.curve.outermost(), &self.curve.equilibrium);
             let here = state.contact_radius;
             here >= start || is_smaller_beyond(table, problem, [start, here], *control, None)
         });
-        if *is_cut_off { Err(Fault::small_start()) } else { Ok(state) }
+        let Curve { equilibrium, .. } = &self.curve;
+        match *is_cut_off {
+            true => Err(Fault::small_start()),
+            // Without adhesion everything is smallest where the contact vanishes.
+            false if equilibrium.problem.work_of_adhesion > 0.0 && *is_at_end => Err(Fault::early_end()),
+            false => Ok(state),
+        }
     }
 }
 

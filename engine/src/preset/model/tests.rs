@@ -381,14 +381,6 @@ fn a_refused_value_changes_nothing() {
 }
 
 #[test]
-fn the_end_follows_the_start_unless_said() {
-    let mut preset = wavy();
-    assert!((preset.end_contact_radius(0.5) - 0.002).abs() < 1e-18);
-    preset.reset("path.end_contact_radius").unwrap();
-    assert!((preset.end_contact_radius(0.25) - 0.001).abs() < 1e-18);
-}
-
-#[test]
 fn a_preset_made_in_code_is_checked() {
     let mut preset = wavy();
     preset.material.effective_modulus = f64::INFINITY;

@@ -170,7 +170,7 @@ parameters! {
     START_KEYS[2] => "P start" Force "force at which the path starts, a preload":
         Finite or Described("none: another start is used");
     "path.end_contact_radius" => "s end" Length "contact radius at which the path ends":
-        Positive or Described("0.004 x the contact radius at the start");
+        Positive or Described("0.004 x the contact radius at the start, or less where the contact still holds there");
     "path.begin" => "begin" Number "where a walk begins: with the disc of the start, or apart, at the first touch":
         Choice(&Begin::NAMES) or Text(Begin::NAMES[0]);
     "path.contact" => "contact" Number "which contacts a path follows: a disc and rings wherever they appear, or one disc alone":
