@@ -15,8 +15,14 @@ use nalgebra::DVector;
 const RISE: f64 = 3.841_458_820_694_124;
 
 /// The rounds and the tolerance of a fit that begins next to its end.
-const WARM: MinimizationSettings =
-    MinimizationSettings { rounds: 40, tolerance: 1e-6, resolution: 1.0, huber: f64::INFINITY, nothing: 0.0 };
+const WARM: MinimizationSettings = MinimizationSettings {
+    rounds: 40,
+    tolerance: 1e-6,
+    resolution: 1.0,
+    huber: f64::INFINITY,
+    nothing: 0.0,
+    small: 0.0,
+};
 
 /// Below this many degrees of freedom an interval is much wider than 1.96 errors.
 pub const FEW_DEGREES: f64 = 40.0;

@@ -91,11 +91,14 @@ pub struct MinimizationSettings {
     /// A gain of the cost too small to show in any value, on top of a share of the cost itself: where the residuals
     /// have kinks, ever smaller gains are found without end.
     pub nothing: f64,
+    /// A gain of the cost over many rounds that shows in no value beside its error: rounds that end with less have
+    /// found the minimum, as near as kinks of the residuals let them.
+    pub small: f64,
 }
 
 impl Default for MinimizationSettings {
     fn default() -> Self {
-        Self { rounds: 100, tolerance: 1e-9, resolution: 1.0, huber: f64::INFINITY, nothing: 0.0 }
+        Self { rounds: 100, tolerance: 1e-9, resolution: 1.0, huber: f64::INFINITY, nothing: 0.0, small: 0.0 }
     }
 }
 
@@ -249,7 +252,10 @@ pub fn minimize_from<P: LeastSquares>(
     /// This many rounds, each with a gain that no value shows, end it.
     const IDLE: usize = 6;
     const SHOWN: f64 = 1e-10;
+    /// So many rounds are many.
+    const MANY: usize = 50;
     let mut idle = 0;
+    let mut costs: Vec<f64> = Vec::new();
     let (c, counts, priors) = (settings.huber, problem.counts(), problem.priors());
     let mut u = start.to_vec();
     let mut at = at.informed(priors, &u);
@@ -266,6 +272,7 @@ pub fn minimize_from<P: LeastSquares>(
         if progress.stop() {
             return end(u, at, best, Ending::Cancelled, round);
         }
+        costs.push(best);
         let factored = TriangularSystem::of(&at, counts, c);
         for (scale, length) in scales.iter_mut().zip(factored.lengths.iter()) {
             *scale = f64::max(*scale, *length);
@@ -305,7 +312,10 @@ pub fn minimize_from<P: LeastSquares>(
             }
         }
     }
-    end(u, at, best, Ending::Rounds, settings.rounds)
+    let before = costs.len().checked_sub(MANY).map(|at| costs[at]);
+    let is_found = before.is_some_and(|before| before - best < settings.small);
+    let ending = if is_found { Ending::Converged } else { Ending::Rounds };
+    end(u, at, best, ending, settings.rounds)
 }
 
 #[cfg(test)]

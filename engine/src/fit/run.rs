@@ -6,7 +6,7 @@ use super::fitted::{Fitted, too_small, unmoved, values};
 use super::intervals::intervals;
 use super::judge::{Evidence, doubts, extent, of_hidden, of_sparse, of_spring, of_unclear, reasons, unseen};
 use super::laid::laid;
-use super::least_squares::Ending;
+use super::least_squares::{Ending, LeastSquares, cost};
 use super::options::{FitError, Options};
 use super::outcome::Fit;
 use super::pose::posed;
@@ -17,7 +17,7 @@ use super::rows::Rows;
 use super::scatter::Scatter;
 use super::settled::{last, of_correlated, of_tare, unpinned, unseen_start};
 use super::shown::{KnownNoise, of_shown_noise};
-use super::solve::SolvedFit;
+use super::solve::{HUBER, SolvedFit};
 use super::start::{Tried, start};
 use super::uncertain::given;
 use super::verdict::{Reason, Verdict};
@@ -88,16 +88,11 @@ impl<'a> Posed<'a> {
             problem = problem.without_loading(why, &mut notes)?;
             (starts, solved) = found(&mut problem)?;
         }
-        if unpinned(&problem, &solved).is_some() {
-            // A fit may have moved the radius to where no row tells it.
-            let mut u = solved.minimum.parameters.clone();
-            problem.begun(&mut u);
-            let mut other = problem.clone();
-            let again =
-                last(&mut other, &u, options.robust, least, &ProgressPart::new(progress, [0.8, 0.85]));
-            if let Some(again) = again.ok().filter(|again| again.scale < solved.scale) {
-                (problem, solved) = (other, again);
-            }
+        if problem.pins() {
+            let progress = ProgressPart::new(progress, [0.8, 0.85]);
+            (problem, solved) = pinned_again(problem, solved, |problem, u| {
+                last(problem, u, options.robust, least, &progress)
+            });
         }
         if let Some(j) = unpinned(&problem, &solved) {
             let mut u = solved.minimum.parameters;
@@ -209,6 +204,39 @@ impl<'a> Posed<'a> {
             parameters: fitted,
         })
     }
+}
+
+/// The nearest minimum where an edge is pinned between approach and retraction: a fit may have moved the radius of that
+/// edge, or what closing gains, to where no row tells them, or to another wave. `solve` begins again from the radius to
+/// which the values lead.
+fn pinned_again(
+    mut problem: FitProblem,
+    mut solved: SolvedFit,
+    solve: impl Fn(&mut FitProblem, &[f64]) -> Result<SolvedFit, FitError>,
+) -> (FitProblem, SolvedFit) {
+    /// The work of adhesion of closing edges, over that of the minimum.
+    const FACTORS: [f64; 3] = [1.0, 0.6, 1.6];
+    /// Residuals of this size, in σ, may be those of another minimum than the nearest.
+    const FAR: f64 = 1.05;
+    let closing = Target::Adhesion(Segment::Approach);
+    let closing = problem.parameters.iter().position(|parameter| parameter.target == closing);
+    let (judge, from, huber) = (problem.clone(), solved.minimum.parameters.clone(), HUBER * solved.scale);
+    let cost = |u: &[f64]| judge.residuals(u).map(|residuals| cost(&residuals, judge.counts(), huber));
+    let mut least = cost(&from).unwrap_or(f64::INFINITY);
+    let tried = if solved.scale > FAR && closing.is_some() { FACTORS.len() } else { 1 };
+    for factor in &FACTORS[..tried] {
+        let mut u = from.clone();
+        if let Some(j) = closing {
+            u[j] += ln(*factor);
+        }
+        problem.begun(&mut u);
+        let mut other = problem.clone();
+        let Ok(again) = solve(&mut other, &u) else { continue };
+        if let Some(found) = cost(&again.minimum.parameters).filter(|found| *found < least) {
+            (problem, solved, least) = (other, again, found);
+        }
+    }
+    (problem, solved)
 }
 
 /// How a fit ends whose minimization ended so, and of which one direction may be `unseen`.

@@ -87,6 +87,8 @@ fn solve_all(
     /// share of the noise: a ten-thousandth of an error.
     const ROUGH: f64 = 1e-4;
     const FINE_OF_MANY: f64 = 1e-7;
+    /// Standard errors that do not count over many rounds.
+    const SMALL: f64 = 0.1;
     let mut at = problem.evaluate(start)?;
     let mut scale = problem.scale(&at.residuals);
     let mut u = start.to_vec();
@@ -102,6 +104,8 @@ fn solve_all(
             tolerance,
             huber,
             nothing: 0.5 * (NOTHING * scale).powi(2),
+            // The valleys of a pull are long.
+            small: if is_pulled(&problem.preset) { 0.0 } else { 0.5 * (SMALL * scale).powi(2) },
             ..MinimizationSettings::default()
         };
         let minimum = minimize_from(problem, &u, at, &settings, progress)?;
