@@ -10,7 +10,7 @@ use super::least_squares::{Ending, LeastSquares, cost};
 use super::options::{FitError, Options};
 use super::outcome::Fit;
 use super::pose::posed;
-use super::problem::{ADHESION, FitProblem, FreeParameter, Target};
+use super::problem::{ADHESION, FitProblem, FreeParameter, START, Target};
 use super::pulled::is_pulled;
 use super::residuals::{beside, of_part};
 use super::rows::Rows;
@@ -218,18 +218,32 @@ fn pinned_again(
     const FACTORS: [f64; 3] = [1.0, 0.6, 1.6];
     /// Residuals of this size, in σ, may be those of another minimum than the nearest.
     const FAR: f64 = 1.05;
-    let closing = Target::Adhesion(Segment::Approach);
-    let closing = problem.parameters.iter().position(|parameter| parameter.target == closing);
+    /// A radius less than so many errors away, with all else held, is the same.
+    const SAME: f64 = 5.0;
+    let place = |of: &Target| problem.parameters.iter().position(|parameter| parameter.target == *of);
+    let closing = place(&Target::Adhesion(Segment::Approach));
+    let pinned = place(&Target::Key(START.to_owned()));
+    let is_there = |u: &[f64]| {
+        pinned.is_some_and(|j| {
+            let SolvedFit { minimum, scale } = &solved;
+            (u[j] - minimum.parameters[j]).abs() * minimum.at.jacobian.column(j).norm() < SAME * scale
+        })
+    };
+    let unseen = unpinned(&problem, &solved).is_some();
     let (judge, from, huber) = (problem.clone(), solved.minimum.parameters.clone(), HUBER * solved.scale);
     let cost = |u: &[f64]| judge.residuals(u).map(|residuals| cost(&residuals, judge.counts(), huber));
     let mut least = cost(&from).unwrap_or(f64::INFINITY);
     let tried = if solved.scale > FAR && closing.is_some() { FACTORS.len() } else { 1 };
-    for factor in &FACTORS[..tried] {
+    let begun = |(at, factor): (usize, &f64)| {
         let mut u = from.clone();
         if let Some(j) = closing {
             u[j] += ln(*factor);
         }
         problem.begun(&mut u);
+        (at > 0 || unseen || !is_there(&u)).then_some(u)
+    };
+    let starts: Vec<Vec<f64>> = FACTORS[..tried].iter().enumerate().filter_map(begun).collect();
+    for u in starts {
         let mut other = problem.clone();
         let Ok(again) = solve(&mut other, &u) else { continue };
         if let Some(found) = cost(&again.minimum.parameters).filter(|found| *found < least) {

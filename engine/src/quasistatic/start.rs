@@ -164,14 +164,21 @@ pub fn end_contact_radius(
     const SHARE: f64 = 0.004;
     /// Of the radius below which nothing is stable.
     const BELOW: f64 = 0.5;
+    /// Radii at which it is asked first whether anything is: each a share of the one before.
+    const ASKED: usize = 16;
+    const STEP: f64 = 0.75;
     let usual = SHARE * start;
-    let panels = match table.up_to_while(usual, 0, progress) {
+    let panels = match table.up_to_while(start, 0, progress) {
         Err(TableError::Stopped(stopped)) => return Err(stopped),
         // Whoever needs the gap up to the start says why it has no table.
         Err(_) => return Ok(usual),
         Ok(panels) => panels,
     };
     let exact = ExactSolution::new(panels, problem.work_of_adhesion);
+    let asked = std::iter::successors(Some(usual), |s| Some(STEP * s)).take(ASKED);
+    if !asked.filter_map(|s| exact.place(s)).any(|place| exact.at(place).slopes[0] > 0.0) {
+        return Ok(usual);
+    }
     let last = exact.place(usual).map_or(exact.len(), |place| place.panel + 1);
     let monotone = Monotone::on(&exact, Control::Displacement, 0..last);
     let rising = monotone.stretches.iter().find(|stretch| stretch.rising);
