@@ -17,7 +17,7 @@ use crate::problem::{
 };
 use crate::progress::{Progress, Stopped, Unwatched};
 use crate::quasistatic::admissible::{Judge, falls};
-use crate::quasistatic::beyond::{is_smaller_beyond, is_smaller_beyond_zone};
+use crate::quasistatic::beyond::{is_smaller_beyond, is_smaller_beyond_zone, is_smaller_within};
 use crate::quasistatic::monotone::weighted;
 use crate::quasistatic::path::{
     Losses, Path, PathError, PathSetting, PathState, PathStop, ZoneStartError, Zones, cycle, cycle_in_zone,
@@ -56,6 +56,8 @@ pub struct Case {
     pub start: f64,
     /// The contact radius at the end, reduced.
     pub end: f64,
+    /// Whether the preset says so.
+    pub end_is_given: bool,
     /// Where a loop turns round, reduced; `None` means at the start.
     pub turn: Option<Turn>,
     /// What a closing edge gains if that is less than the work of adhesion, reduced; the edge at the start is one that
@@ -219,6 +221,7 @@ impl Case {
             has_elements,
             start,
             end,
+            end_is_given: preset.path.end_contact_radius.is_some(),
             turn,
             closing,
             tabor,
@@ -442,13 +445,13 @@ impl Case {
 
     /// Warnings for a largest contact of radius `largest` (reduced).
     pub fn warnings(&self, largest: f64) -> Vec<String> {
-        let mut warnings = self.warnings_of_problem();
+        let mut warnings = self.warnings_of_problem(largest);
         warnings.extend(self.basis.cautions(&self.reduced, largest));
         warnings
     }
 
     /// The same without those of the basis.
-    pub fn warnings_of_problem(&self) -> Vec<String> {
+    pub fn warnings_of_problem(&self, largest: f64) -> Vec<String> {
         let mut warnings = self.problem.shape.notes(&self.shown);
         if let Some(tabor) = self.tabor.filter(|tabor| self.cohesion.is_none() && *tabor < LARGE_TABOR) {
             warnings.push(format!(
@@ -457,13 +460,14 @@ impl Case {
                 self.change_with_range(tabor)
             ));
         }
-        warnings.extend(self.warning_of_slope());
+        warnings.extend(self.warning_of_slope(largest));
+        warnings.extend(self.warning_of_size(largest));
         warnings
     }
 
-    /// A warning, if the gap is steep: the theory of a half-space needs small slopes.
-    fn warning_of_slope(&self) -> Option<String> {
-        let said = short(self.problem.shape.steep_slope(self.start * self.units().length)?, 2);
+    /// A warning, if the gap is steep within the radius `largest` (reduced): the theory of a half-space needs small slopes.
+    fn warning_of_slope(&self, largest: f64) -> Option<String> {
+        let said = short(self.problem.shape.steep_slope(largest * self.units().length)?, 2);
         Some(format!("the gap has slopes up to {said}: this theory is for slopes small beside 1"))
     }
 
@@ -492,27 +496,35 @@ impl Case {
             || is_smaller_beyond(&self.table, &self.reduced, [begun, least.contact_radius], of, held)
     }
 
-    /// A warning, if the largest pull of an unloading is where it ends in contact: it would pull more further on.
+    /// A warning, if an unloading ends in contact, and would pull more further on.
     pub fn warning_of_end(&self, path: &Path) -> Option<String> {
         let end = said(&self.shown, Quantity::Length, self.end * self.units().length);
+        let further = if self.end_is_given {
+            "path.end_contact_radius = none goes on to the last contact"
+        } else {
+            "smaller contacts are not resolved"
+        };
         self.ends_early(path, Control::Force).then(|| {
             format!(
-                "the force still falls where the path ends, at the contact radius {end}: the largest pull is beyond it; \
-                 path.end_contact_radius = none goes on to the last contact"
+                "the path ends in contact, at the contact radius {end}, and would pull more further on: {further}"
             )
         })
     }
 
-    /// Whether an unloading ends in contact while its force, or its approach, as `of` says, still falls.
+    /// Whether an unloading ends in contact, and smaller contacts have a smaller force, or a smaller approach, as `of`
+    /// says, than all on its way.
     pub fn ends_early(&self, path: &Path, of: Control) -> bool {
+        if path.stop != PathStop::End || path.turn.is_some() || self.reduced.work_of_adhesion <= 0.0 {
+            return false;
+        }
         let value = |state: &PathState| weighted(of, state.approach, state.force);
         let least = path.states.iter().map(value).fold(f64::INFINITY, f64::min);
         let is_last = path.states.last().is_some_and(|last| value(last) <= least);
-        path.stop == PathStop::End && path.turn.is_none() && self.reduced.work_of_adhesion > 0.0 && is_last
+        is_last || is_smaller_within(&self.table, &self.reduced, (self.end, least), of, Some(path.control))
     }
 
     /// A warning, if a contact of radius `largest` (reduced) is larger than the bodies are round.
-    pub fn warning_of_size(&self, largest: f64) -> Option<String> {
+    fn warning_of_size(&self, largest: f64) -> Option<String> {
         let radius = self.problem.shape.radius_of_curvature()?;
         let largest = largest * self.units().length;
         let [shown, round] = [largest, radius].map(|r| said(&self.shown, Quantity::Length, r));

@@ -110,7 +110,8 @@ impl ProblemCurve {
         let in_zone = case.cohesion.is_some();
         let start = (!in_zone).then(|| curve.equilibrium.explicit(curve.outermost())).flatten();
         let digits = if in_zone { ZONE_DIGITS } else { case.basis.trusted_digits(&case.reduced, case.start) };
-        let warnings = if in_zone { case.warnings_of_problem() } else { case.warnings(curve.outermost()) };
+        let warnings =
+            if in_zone { case.warnings_of_problem(case.start) } else { case.warnings(curve.outermost()) };
         let mut notes = if in_zone { Vec::new() } else { case.notes(curve.outermost()) };
         if walked.basis != preset.basis {
             notes.push(LOOP_IS_EXACT.to_owned());

@@ -188,7 +188,8 @@ impl Journal {
         let mut journal = self.clone();
         let Some(mut lines) = journal.lines_to(self.kept.here) else { return Ok(Vec::new()) };
         let own = Arc::clone(&lines.preset);
-        journal.sync(&mut lines, preset.unwrap_or(&own), Some(way), failed);
+        // Nothing is walked where there is no curve.
+        journal.sync(&mut lines, preset.unwrap_or(&own), Some(way).filter(|_| !failed), failed);
         let texts = journal.texts(&lines);
         lines.broken.map_or(Ok(texts), Err)
     }

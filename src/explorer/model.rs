@@ -300,7 +300,8 @@ impl Model {
         // Values whose curve was given up have no state: nothing was done with them.
         let given_up = matches!(self.curve_error, Some(CurveError::GivenUp(_)));
         let preset = (!given_up).then_some(&self.preset);
-        let failed = matches!(self.curve_error, Some(CurveError::Failed(_)));
+        let has_no_path = self.curve.as_ref().is_some_and(|curve| matches!(curve.along, Some(Err(_))));
+        let failed = matches!(self.curve_error, Some(CurveError::Failed(_))) || has_no_path;
         self.journal.so_far(preset, (self.inward, self.length), failed)
     }
 

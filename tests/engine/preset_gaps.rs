@@ -165,7 +165,8 @@ fn a_path_without_an_end_of_its_own_goes_on_to_the_last_contact() {
                 let pull = report.totals.largest_pull.as_ref().map_or(0.0, |at| -at.force);
                 let critical = 1.5 * std::f64::consts::PI * 0.05 * 1e-3;
                 let told = format!("{modulus} {control} {shape}: {pull} {critical} {:?}", report.warnings);
-                let is_early = report.warnings.iter().any(|warning| warning.contains("still falls where"));
+                let is_early =
+                    report.warnings.iter().any(|warning| warning.contains("would pull more further on"));
                 assert_eq!(is_early, !is_apart, "{told}");
                 if is_apart && shape == "sphere" {
                     assert!((pull / critical - 1.0).abs() < 1e-6, "{told}");

@@ -275,3 +275,15 @@ fn the_journal_says_what_was_done_and_leaves_out_what_was_not() {
     session.does(Id::Step).does(Id::Restart);
     assert_eq!(session.model.journal.lines(), ["step 1", "restart"]);
 }
+
+#[test]
+fn values_without_a_path_are_tried_by_a_replay_too() {
+    let mut session = Session::new("fig-9-si");
+    let set = |key: &'static str, text: &str| Command::Assign(vec![(key.into(), text.to_owned())]);
+    session.does(Command::Steps(2)).does(set("gap.amplitude", "0.003"));
+    session.does(set("material.closing_work_of_adhesion", "3.86e-6")).does(set("path.begin", "apart"));
+    let curve = session.model.curve.as_ref().unwrap();
+    assert!(curve.along.as_ref().is_some_and(Result::is_err), "{}", session.status());
+    let lines = session.model.script().unwrap();
+    assert_eq!(lines.last().map(String::as_str), Some("try set path.begin=apart"), "{lines:?}");
+}

@@ -192,3 +192,18 @@ fn a_deviation_may_be_a_share_of_the_mean() {
         "{err}"
     );
 }
+
+#[test]
+fn an_end_that_cuts_something_off_is_said() {
+    let home = Sweeps::new();
+    let store = Store::at(home.path("presets"), &[]);
+    let text = "preset = \"wavy-sphere\"\nset = [\"gamma=1e-5\"]\n\
+        quantities = [\"farthest_displacement\", \"least_approach\", \"snaps_displacement\"]\n\
+        [[axis]]\nkey = \"path.end_contact_radius\"\nvalues = [0.08, 0.0001]\n";
+    let spec = spec::read(&store, home.folder(), "s", text).unwrap();
+    let [early, whole] = [0, 1].map(|row| spec.measure(row, &Unwatched).unwrap());
+    // The path ends in a stable contact, and the approach is smaller at the last contact, far further in.
+    assert_eq!(early.fault.as_ref().map(|fault| fault.reason), Some("early end"));
+    assert!(early.cells[0].is_none() && early.cells[1].is_none() && early.cells[2].is_some(), "{early:?}");
+    assert!(whole.fault.is_none() && whole.cells.iter().all(Option::is_some), "{whole:?}");
+}

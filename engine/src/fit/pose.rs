@@ -330,6 +330,12 @@ fn closing(
                 "{CLOSING_ADHESION} plays no part, as there is no retraction: the work of adhesion is that of the approach"
             ));
         }
+        if given.is_some() && !is_loop && !has(Segment::Approach) {
+            notes.push(format!(
+                "{CLOSING_ADHESION} plays no part, as there is no approach: first rows in which the edge still rests miss the \
+                 curve, and data.skip leaves them out"
+            ));
+        }
         return Ok(given.filter(|_| is_loop && !has_law).map_or(Closing::Same, Closing::Given));
     }
     let refused = |why: &str| Err(FitError::Key { key: CLOSING_ADHESION.to_owned(), why: why.to_owned() });

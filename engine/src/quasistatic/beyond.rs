@@ -36,7 +36,22 @@ pub fn is_smaller_beyond(
     is_smaller(&exact, [start, far], weighted(of, here.approach, here.force), (of, held))
 }
 
-/// The same where adhesion has a range, with the value `here` itself.
+/// The same for contacts smaller than `end`, a length, and the value `here` itself.
+pub fn is_smaller_within(
+    table: &Table,
+    problem: &Reduced,
+    (end, here): (f64, f64),
+    of: Control,
+    held: Option<Control>,
+) -> bool {
+    /// Of the end: smaller contacts are looked at no more.
+    const SMALLEST: f64 = 1e-9;
+    let Ok(panels) = table.up_to(end) else { return false };
+    let exact = ExactSolution::new(panels, problem.work_of_adhesion);
+    is_smaller(&exact, [SMALLEST * end, end], here, (of, held))
+}
+
+/// The same as for larger contacts where adhesion has a range, with the value `here` itself.
 pub fn is_smaller_beyond_zone(
     (table, problem, law): (&Arc<Table>, &Reduced, Cohesion),
     (start, here): (f64, f64),

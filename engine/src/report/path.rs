@@ -326,10 +326,10 @@ impl PathReport {
         let is_loop = path.turn.is_some();
         let begins = path.start().map_or(0.0, |start| start.contact_radius).max(case.start);
         let in_zone = case.cohesion.is_some();
-        let mut warnings =
-            if is_loop || in_zone { case.warnings_of_problem() } else { case.warnings(begins) };
         let radii = path.states.iter().map(|state| state.contact_radius);
-        warnings.extend(case.warning_of_size(radii.fold(begins, f64::max)));
+        let largest = radii.fold(if is_loop { 0.0 } else { begins }, f64::max);
+        let mut warnings =
+            if is_loop || in_zone { case.warnings_of_problem(largest) } else { case.warnings(largest) };
         warnings.extend(case.warning_of_start(path));
         warnings.extend(case.warning_of_end(path));
         warnings.extend(path.warnings.iter().map(|w| w.words(&printer)));

@@ -310,7 +310,7 @@ impl PullReport {
             error => PullError::Rate { error, printer: Box::new(case.printer()) },
         };
         let programmes = programmes(preset, asked)?;
-        let mut warnings = case.warnings_of_problem();
+        let mut warnings = case.warnings_of_problem(case.start);
         if preset.basis != BasisSpec::Exact {
             warnings.push(EXACT.to_owned());
         }

@@ -108,7 +108,7 @@ impl StabilityReport {
             },
         };
         let rows = places.iter().enumerate().map(row).collect();
-        let mut warnings = case.warnings_of_problem();
+        let mut warnings = case.warnings_of_problem(case.start);
         warnings.extend(case.warning_of_dead_band());
         if preset.basis != BasisSpec::Exact {
             warnings.push(EXACT.to_owned());

@@ -318,7 +318,7 @@ impl TraceReport {
         let stop = fault.map_or_else(|| OUT_OF_RANGE.to_owned(), |error| error.words(&case.printer()));
         Ok(Self {
             head: Head::new("trace", preset, case),
-            warnings: case.warnings_of_problem(),
+            warnings: case.warnings_of_problem(case.start),
             notes: note_of_range(preset, case).into_iter().collect(),
             start_note: points.first().and_then(|start| start_note(preset, case, start)),
             stop,

@@ -135,7 +135,8 @@ impl Fault {
     pub fn early_end() -> Self {
         Self::new(
             REASONS[13],
-            "it still falls where the path ends: decrease path.end_contact_radius, or set it to none",
+            "a contact smaller than that at the end has, or may have, a smaller value: decrease path.end_contact_radius, or \
+             set it to none",
         )
     }
 

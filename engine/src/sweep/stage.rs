@@ -8,7 +8,7 @@ use crate::fit::{Fit, Fitted, Options, Verdict, fit_own};
 use crate::preset::Preset;
 use crate::problem::{Control, Groups, Problem};
 use crate::progress::Progress;
-use crate::quasistatic::beyond::is_smaller_beyond;
+use crate::quasistatic::beyond::{is_smaller_beyond, is_smaller_within};
 use crate::quasistatic::monotone::weighted;
 use crate::quasistatic::{Curve, Detail, Equilibrium, Event, EventKind, Path, PathState, State};
 use crate::report::number::exact;
@@ -57,8 +57,8 @@ pub(super) struct CurveMinima {
 /// The state of the curve at which the controlled quantity is smallest.
 struct LeastState {
     state: State,
-    /// Whether it is the innermost state.
-    is_at_end: bool,
+    /// Whether it is the innermost state, or contacts further in have a smaller value.
+    is_early: OnceCell<bool>,
     is_cut_off: OnceCell<bool>,
     control: Control,
 }
@@ -237,9 +237,7 @@ impl CurveMinima {
         let least = [Control::Force, Control::Displacement].map(|control| {
             curve.hold(control);
             let state = least(&curve, control);
-            let is_at_end =
-                curve.samples.last().is_some_and(|end| state.contact_radius <= end.contact_radius);
-            LeastState { state, is_at_end, is_cut_off: OnceCell::new(), control }
+            LeastState { state, is_early: OnceCell::new(), is_cut_off: OnceCell::new(), control }
         });
         let critical_force = case.critical_force().map(|force| force / case.units().force);
         Ok(Self { curve, least, critical_force })
@@ -265,19 +263,26 @@ impl CurveMinima {
 
     /// The state of smallest force, or of smallest approach, among all contacts and not only those up to the start.
     fn smallest(&self, which: usize) -> Result<&State, Fault> {
-        let LeastState { state, is_at_end, is_cut_off, control } = &self.least[which];
+        let LeastState { state, is_early, is_cut_off, control } = &self.least[which];
         let is_cut_off = is_cut_off.get_or_init(|| {
             let (start, Equilibrium { problem, table, .. }) =
                 (self.curve.outermost(), &self.curve.equilibrium);
             let here = state.contact_radius;
             here >= start || is_smaller_beyond(table, problem, [start, here], *control, None)
         });
-        let Curve { equilibrium, .. } = &self.curve;
-        match *is_cut_off {
-            true => Err(Fault::small_start()),
+        let is_early = is_early.get_or_init(|| {
+            let Equilibrium { problem, table, .. } = &self.curve.equilibrium;
+            let end = self.curve.samples.last().map_or(0.0, |end| end.contact_radius);
+            let here = weighted(*control, state.approach, state.force);
             // Without adhesion everything is smallest where the contact vanishes.
-            false if equilibrium.problem.work_of_adhesion > 0.0 && *is_at_end => Err(Fault::early_end()),
-            false => Ok(state),
+            problem.work_of_adhesion > 0.0
+                && (state.contact_radius <= end
+                    || is_smaller_within(table, problem, (end, here), *control, None))
+        });
+        match (*is_cut_off, *is_early) {
+            (true, _) => Err(Fault::small_start()),
+            (false, true) => Err(Fault::early_end()),
+            (false, false) => Ok(state),
         }
     }
 }
