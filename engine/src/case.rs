@@ -182,29 +182,20 @@ impl Case {
         let cohesion = preset.cohesion().map(|law| law.reduced_by(units.length, units.pressure));
         let closing = preset.edge.closing_work_of_adhesion.map(|gamma| gamma / units.work_of_adhesion);
         let closing = closing.filter(|closing| *closing < reduced.work_of_adhesion);
-        let start = if let Some(law) = cohesion {
-            match start_in_zone(&table, law, wanted, progress) {
-                Err(ZoneStartError::Path(error)) => return Err(refused_path(error, printer)),
-                Err(ZoneStartError::Start(error)) => Err(error),
-                Ok(start) => Ok(start),
-            }
+        let started = if let Some(law) = cohesion {
+            start_in_zone(&table, law, wanted, progress)
         } else {
             let work_of_adhesion = closing.unwrap_or(reduced.work_of_adhesion);
             let grown = Reduced { work_of_adhesion, ..reduced.clone() };
-            contact_radius(&grown, &*basis, wanted, progress)
+            contact_radius(&grown, &*basis, wanted, progress).map_err(ZoneStartError::Start)
         };
-        let start = start.map_err(|error| match error {
-            StartError::Stopped(stopped) => CaseError::Stopped(stopped),
-            error => CaseError::Start { error, printer: Box::new(printer.clone()) },
-        })?;
+        let start = started.map_err(|error| refused_start(error, &printer))?;
         if preset.basis == BasisSpec::Exact {
             // However the start was given, from here on it decides how far the basis reaches.
             basis = Arc::new(ExactBasis::new(Arc::clone(&table), start));
         }
-        let end = match preset.path.end_contact_radius {
-            Some(end) => end / units.length,
-            None => end_contact_radius(&reduced, &table, start, progress)?,
-        };
+        let given = preset.path.end_contact_radius.map(|end| end / units.length);
+        let end = end_contact_radius(&reduced, &table, start, given, progress)?;
         if end >= start {
             return Err(CaseError::EndOutsideStart { end, start, printer: Box::new(printer) });
         }
@@ -221,7 +212,7 @@ impl Case {
             has_elements,
             start,
             end,
-            end_is_given: preset.path.end_contact_radius.is_some(),
+            end_is_given: given.is_some(),
             turn,
             closing,
             tabor,
@@ -631,6 +622,15 @@ fn refusal(error: TableError, printer: &Printer) -> CaseError {
     match error {
         TableError::Stopped(Stopped) => CaseError::Stopped(Stopped),
         error @ TableError::TooFine(_) => CaseError::Table { error, printer: Box::new(printer.clone()) },
+    }
+}
+
+/// Why there is no start.
+fn refused_start(error: ZoneStartError, printer: &Printer) -> CaseError {
+    match error {
+        ZoneStartError::Path(error) => refused_path(error, printer.clone()),
+        ZoneStartError::Start(StartError::Stopped(stopped)) => CaseError::Stopped(stopped),
+        ZoneStartError::Start(error) => CaseError::Start { error, printer: Box::new(printer.clone()) },
     }
 }
 

@@ -95,8 +95,7 @@ struct OpenWalk {
     curve: Arc<CurveData>,
     inward: bool,
     length: f64,
-    /// Where it began, and its origin once it has made a state.
-    from: Trace,
+    /// The origin of its states, once it has made one.
     origin: Option<usize>,
 }
 
@@ -208,8 +207,7 @@ impl Journal {
     }
 
     pub(super) fn walks(&mut self, action: Action, curve: Arc<CurveData>, inward: bool, length: f64) {
-        let from = self.kept.here;
-        self.walking = Some(OpenWalk { action, curve, inward, length, from, origin: None });
+        self.walking = Some(OpenWalk { action, curve, inward, length, origin: None });
     }
 
     /// A walk made a state, from which the path leads `inward` if the walker follows one: its place.
@@ -315,7 +313,7 @@ impl Journal {
     /// Where a replay must begin for `walking`: that is not part of the curve of one disc, and only a restart asks for it.
     fn begun(&self, walking: &OpenWalk) -> Begin {
         let begin = walking.curve.setting.preset.path.begin;
-        match (&walking.action, self.kept.origins.get(walking.from.origin)) {
+        match (&walking.action, self.kept.origins.get(self.kept.here.origin)) {
             // A path belongs to one beginning, and so does a curve that has ring elements only with one of them.
             _ if walking.curve.along.is_some() || walking.curve.setting.preset.basis != BasisSpec::Exact => {
                 begin

@@ -252,8 +252,6 @@ pub fn minimize_from<P: LeastSquares>(
     /// This many rounds, each with a gain that no value shows, end it.
     const IDLE: usize = 6;
     const SHOWN: f64 = 1e-10;
-    /// So many rounds are many.
-    const MANY: usize = 50;
     let mut idle = 0;
     let mut costs: Vec<f64> = Vec::new();
     let (c, counts, priors) = (settings.huber, problem.counts(), problem.priors());
@@ -312,10 +310,15 @@ pub fn minimize_from<P: LeastSquares>(
             }
         }
     }
+    end(u, at, best, after_all(&costs, best, settings.small), settings.rounds)
+}
+
+/// How a minimization ends whose rounds are used up, by the cost before each of them and the best one: if many of them
+/// gained no more than `small`, it has found the minimum.
+fn after_all(costs: &[f64], best: f64, small: f64) -> Ending {
+    const MANY: usize = 50;
     let before = costs.len().checked_sub(MANY).map(|at| costs[at]);
-    let is_found = before.is_some_and(|before| before - best < settings.small);
-    let ending = if is_found { Ending::Converged } else { Ending::Rounds };
-    end(u, at, best, ending, settings.rounds)
+    if before.is_some_and(|before| before - best < small) { Ending::Converged } else { Ending::Rounds }
 }
 
 #[cfg(test)]

@@ -6,18 +6,18 @@ use super::fitted::{Fitted, too_small, unmoved, values};
 use super::intervals::intervals;
 use super::judge::{Evidence, doubts, extent, of_hidden, of_sparse, of_spring, of_unclear, reasons, unseen};
 use super::laid::laid;
-use super::least_squares::{Ending, LeastSquares, cost};
+use super::least_squares::Ending;
 use super::options::{FitError, Options};
 use super::outcome::Fit;
 use super::pose::posed;
-use super::problem::{ADHESION, FitProblem, FreeParameter, START, Target};
+use super::problem::{ADHESION, FitProblem, FreeParameter, Target};
 use super::pulled::is_pulled;
 use super::residuals::{beside, of_part};
 use super::rows::Rows;
 use super::scatter::Scatter;
-use super::settled::{last, of_correlated, of_tare, unpinned, unseen_start};
+use super::settled::{last, of_correlated, of_tare, pinned_again, unpinned, unseen_start};
 use super::shown::{KnownNoise, of_shown_noise};
-use super::solve::{HUBER, SolvedFit};
+use super::solve::SolvedFit;
 use super::start::{Tried, start};
 use super::uncertain::given;
 use super::verdict::{Reason, Verdict};
@@ -204,53 +204,6 @@ impl<'a> Posed<'a> {
             parameters: fitted,
         })
     }
-}
-
-/// The nearest minimum where an edge is pinned between approach and retraction: a fit may have moved the radius of that
-/// edge, or what closing gains, to where no row tells them, or to another wave. `solve` begins again from the radius to
-/// which the values lead.
-fn pinned_again(
-    mut problem: FitProblem,
-    mut solved: SolvedFit,
-    solve: impl Fn(&mut FitProblem, &[f64]) -> Result<SolvedFit, FitError>,
-) -> (FitProblem, SolvedFit) {
-    /// The work of adhesion of closing edges, over that of the minimum.
-    const FACTORS: [f64; 3] = [1.0, 0.6, 1.6];
-    /// Residuals of this size, in σ, may be those of another minimum than the nearest.
-    const FAR: f64 = 1.05;
-    /// A radius less than so many errors away, with all else held, is the same.
-    const SAME: f64 = 5.0;
-    let place = |of: &Target| problem.parameters.iter().position(|parameter| parameter.target == *of);
-    let closing = place(&Target::Adhesion(Segment::Approach));
-    let pinned = place(&Target::Key(START.to_owned()));
-    let is_there = |u: &[f64]| {
-        pinned.is_some_and(|j| {
-            let SolvedFit { minimum, scale } = &solved;
-            (u[j] - minimum.parameters[j]).abs() * minimum.at.jacobian.column(j).norm() < SAME * scale
-        })
-    };
-    let unseen = unpinned(&problem, &solved).is_some();
-    let (judge, from, huber) = (problem.clone(), solved.minimum.parameters.clone(), HUBER * solved.scale);
-    let cost = |u: &[f64]| judge.residuals(u).map(|residuals| cost(&residuals, judge.counts(), huber));
-    let mut least = cost(&from).unwrap_or(f64::INFINITY);
-    let tried = if solved.scale > FAR && closing.is_some() { FACTORS.len() } else { 1 };
-    let begun = |(at, factor): (usize, &f64)| {
-        let mut u = from.clone();
-        if let Some(j) = closing {
-            u[j] += ln(*factor);
-        }
-        problem.begun(&mut u);
-        (at > 0 || unseen || !is_there(&u)).then_some(u)
-    };
-    let starts: Vec<Vec<f64>> = FACTORS[..tried].iter().enumerate().filter_map(begun).collect();
-    for u in starts {
-        let mut other = problem.clone();
-        let Ok(again) = solve(&mut other, &u) else { continue };
-        if let Some(found) = cost(&again.minimum.parameters).filter(|found| *found < least) {
-            (problem, solved, least) = (other, again, found);
-        }
-    }
-    (problem, solved)
 }
 
 /// How a fit ends whose minimization ended so, and of which one direction may be `unseen`.

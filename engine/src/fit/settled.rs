@@ -1,10 +1,13 @@
 //! The last fit, and again where its residuals show another noise than was assumed.
 
+use super::least_squares::{LeastSquares, cost};
 use super::options::FitError;
 use super::prior::Prior;
 use super::problem::{FitProblem, START, Target};
 use super::pulled::is_pulled;
-use super::solve::{SolvedFit, solve};
+use super::solve::{HUBER, SolvedFit, solve};
+use crate::elementary::ln;
+use crate::measured::Segment;
 use crate::progress::Progress;
 use crate::units::{Quantity, number::said};
 
@@ -55,6 +58,53 @@ fn start_of(problem: &FitProblem, solved: &SolvedFit) -> Option<usize> {
     const LEAST: f64 = 10.0;
     let j = problem.parameters.iter().position(|parameter| parameter.target == Target::Key(START.to_owned()));
     j.filter(|j| solved.minimum.at.jacobian.column(*j).norm() < LEAST * solved.scale)
+}
+
+/// The nearest minimum where an edge is pinned between approach and retraction: a fit may have moved the radius of that
+/// edge, or what closing gains, to where no row tells them, or to another wave. `solve` begins again from the radius to
+/// which the values lead.
+pub(super) fn pinned_again(
+    mut problem: FitProblem,
+    mut solved: SolvedFit,
+    solve: impl Fn(&mut FitProblem, &[f64]) -> Result<SolvedFit, FitError>,
+) -> (FitProblem, SolvedFit) {
+    /// The work of adhesion of closing edges, over that of the minimum.
+    const FACTORS: [f64; 3] = [1.0, 0.6, 1.6];
+    /// Residuals of this size, in σ, may be those of another minimum than the nearest.
+    const FAR: f64 = 1.05;
+    /// A radius less than so many errors away, with all else held, is the same.
+    const SAME: f64 = 5.0;
+    let place = |of: &Target| problem.parameters.iter().position(|parameter| parameter.target == *of);
+    let closing = place(&Target::Adhesion(Segment::Approach));
+    let pinned = place(&Target::Key(START.to_owned()));
+    let is_there = |u: &[f64]| {
+        pinned.is_some_and(|j| {
+            let SolvedFit { minimum, scale } = &solved;
+            (u[j] - minimum.parameters[j]).abs() * minimum.at.jacobian.column(j).norm() < SAME * scale
+        })
+    };
+    let unseen = unpinned(&problem, &solved).is_some();
+    let (judge, from, huber) = (problem.clone(), solved.minimum.parameters.clone(), HUBER * solved.scale);
+    let cost = |u: &[f64]| judge.residuals(u).map(|residuals| cost(&residuals, judge.counts(), huber));
+    let mut least = cost(&from).unwrap_or(f64::INFINITY);
+    let tried = if solved.scale > FAR && closing.is_some() { FACTORS.len() } else { 1 };
+    let begun = |(at, factor): (usize, &f64)| {
+        let mut u = from.clone();
+        if let Some(j) = closing {
+            u[j] += ln(*factor);
+        }
+        problem.begun(&mut u);
+        (at > 0 || unseen || !is_there(&u)).then_some(u)
+    };
+    let starts: Vec<Vec<f64>> = FACTORS[..tried].iter().enumerate().filter_map(begun).collect();
+    for u in starts {
+        let mut other = problem.clone();
+        let Ok(again) = solve(&mut other, &u) else { continue };
+        if let Some(found) = cost(&again.minimum.parameters).filter(|found| *found < least) {
+            (problem, solved, least) = (other, again, found);
+        }
+    }
+    (problem, solved)
 }
 
 /// Fits again where the noise is correlated from row to row: σ is then larger than differences of neighbours tell, by

@@ -130,3 +130,13 @@ fn an_approach_alone_says_which_work_of_adhesion_it_shows() {
     close(&found, &[1.3, 0.01], 0.03);
     assert!(found.notes.iter().any(|note| note.contains("is that of the approach")), "{:?}", found.notes);
 }
+
+#[test]
+fn a_retraction_alone_says_that_a_given_closing_work_plays_no_part() {
+    let mut given = preset(SPHERE, 1.5, 0.02, "");
+    given.set(CLOSING_ADHESION, 0.01.into()).unwrap();
+    let asked = Asked { segment: Some(Segment::Retraction), ..Asked::default() };
+    let options = Options { free: [E, W].map(str::to_owned).to_vec(), asked, ..Options::default() };
+    let found = fit(&given, &pinned(), &options, &Unwatched).unwrap();
+    assert!(found.notes.iter().any(|note| note.contains("as there is no approach")), "{:?}", found.notes);
+}

@@ -148,9 +148,8 @@ pub fn contact_radius(
     }
 }
 
-/// The contact radius, a reduced length, at which a path of one disc ends that starts at `start`, if none is given: a
-/// fixed fraction of the start, or less where the contact is still stable there in fixed grips. Below it, the disc
-/// only shrinks further apart.
+/// The contact radius, a reduced length, at which a path of one disc ends that starts at `start`: the one that is
+/// `given`, or else a fixed fraction of the start, or less where a smaller contact is still stable in fixed grips.
 ///
 /// # Errors
 /// [`Stopped`] if `progress` said stop.
@@ -158,6 +157,7 @@ pub fn end_contact_radius(
     problem: &Reduced,
     table: &Table,
     start: f64,
+    given: Option<f64>,
     progress: &dyn Progress,
 ) -> Result<f64, Stopped> {
     /// Of the start.
@@ -167,6 +167,9 @@ pub fn end_contact_radius(
     /// Radii at which it is asked first whether anything is: each a share of the one before.
     const ASKED: usize = 16;
     const STEP: f64 = 0.75;
+    if let Some(end) = given {
+        return Ok(end);
+    }
     let usual = SHARE * start;
     let panels = match table.up_to_while(start, 0, progress) {
         Err(TableError::Stopped(stopped)) => return Err(stopped),

@@ -166,15 +166,17 @@ fn outcome(report: &PathReport) -> String {
         let _ = writeln!(text, "turn: asked for the {of} {}, reached {}", at(turn.asked), at(turn.reached));
     }
     let shown = |quantity, x| ascii_unit(units, quantity, x, |x| significant(x, 7));
+    let is_apart = report.events.last().is_some_and(|event| event.after.is_none());
+    let so_far = if is_apart { "" } else { " up to the end" };
     if let Some(at) = &totals.largest_pull {
         let ratio = ratio(at.force, report.head.problem.critical_force);
         let none = if at.force < 0.0 { "" } else { ": nothing pulls" };
-        let _ = writeln!(text, "largest pull: {}{ratio}{none}", shown(Quantity::Force, at.force));
+        let _ = writeln!(text, "largest pull{so_far}: {}{ratio}{none}", shown(Quantity::Force, at.force));
     } else if report.has_reached_its_end {
         text += "largest pull: none: the bodies are still pressed together where the path ends\n";
     }
     if let Some(at) = &totals.farthest {
-        let _ = writeln!(text, "farthest: delta {}", shown(Quantity::Length, at.approach));
+        let _ = writeln!(text, "farthest{so_far}: delta {}", shown(Quantity::Length, at.approach));
     }
     let rings = |state: &StateReport| state.contacts.iter().filter(|edges| edges[0] > 0.0).count();
     let most = report.states.iter().map(|state| rings(&state.state)).max().unwrap_or(0);
@@ -185,11 +187,10 @@ fn outcome(report: &PathReport) -> String {
     let before = totals.dissipated_before_last_contact;
     let has_zone = report.events.iter().any(|event| event.kind == EventKind::SnapOff.name());
     let last = if has_zone { "the snap-off" } else { "the last contact" };
-    let is_apart = report.events.last().is_some_and(|event| event.after.is_none());
     // What a dead band loses is not among it.
     let lost_energy = if totals.dead_band.is_some() { "energy lost in jumps" } else { "energy lost" };
     let _ = match totals.dissipated {
-        None if !is_apart => writeln!(text, "{lost_energy} up to there: {}", energy(before)),
+        None if !is_apart => writeln!(text, "{lost_energy}{so_far}: {}", energy(before)),
         Some(lost) => {
             writeln!(text, "{lost_energy}: {}, including {} before {last}", energy(lost), energy(before))
         }

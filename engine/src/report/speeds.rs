@@ -140,7 +140,8 @@ impl SpeedsReport {
         if rows.is_empty() {
             return Err(SpeedsError::Nothing);
         }
-        let mut warnings = case.warnings_of_problem(case.start);
+        let largest = rows.iter().map(|row| row.contact_radius).fold(0.0, f64::max);
+        let mut warnings = case.warnings_of_problem(largest / case.units().length);
         warnings.extend(branches.swapped().into_iter().chain(branches.doubt()).chain(doubt));
         warnings.extend(doubt_of_baseline(&reading, preset, &branches));
         warnings.extend(doubts_of_rows(of_file.len() - rows.len() - hidden, ambiguous, hidden, contrary));

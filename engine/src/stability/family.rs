@@ -374,10 +374,8 @@ impl Family {
 
     /// The contact radius at which the path of a member ends that starts at `start`.
     fn end_of(&self, made: &MemberCase, start: f64) -> Result<f64, FamilyError> {
-        match made.preset.path.end_contact_radius {
-            Some(end) => Ok(end / self.length),
-            None => Ok(end_contact_radius(&made.reduced, &*self.table(made)?, start, &Unwatched)?),
-        }
+        let given = made.preset.path.end_contact_radius.map(|end| end / self.length);
+        Ok(end_contact_radius(&made.reduced, &*self.table(made)?, start, given, &Unwatched)?)
     }
 
     /// How an axis enters.

@@ -8,8 +8,9 @@ use crate::explorer::command::{Assignment, Command, Id, LENGTHS, MOST_STEPS};
 use crate::explorer::export::{Export, ends_in};
 use crate::explorer::pins;
 use crate::explorer::view::{Home, Overlay, View};
+use pulloff_engine::preset::called::is_called;
 use pulloff_engine::preset::schema::Kind;
-use pulloff_engine::preset::{Key, PARAMETERS, Parameter};
+use pulloff_engine::preset::{Key, PARAMETERS};
 use pulloff_engine::sweep::QuantityColumn;
 use pulloff_engine::text::{closest, quote};
 
@@ -170,10 +171,9 @@ fn is_value(word: &Word) -> bool {
     !word.text.contains('=')
 }
 
-/// Whether any text may be the value of a key, which may be given by the last part of its name.
+/// Whether any text may be the value of a key, or of one with this short name.
 fn takes_text(key: &str) -> bool {
-    let is_it = |row: &Parameter| row.key == key || row.key.rsplit('.').next() == Some(key);
-    PARAMETERS.iter().any(|row| is_it(row) && matches!(row.kind, Kind::Text { .. }))
+    PARAMETERS.iter().any(|row| is_called(row, key) && matches!(row.kind, Kind::Text { .. }))
 }
 
 /// Whether a value is a number without a unit, or ends with one after `=`.

@@ -122,3 +122,14 @@ fn it_can_be_stopped_and_keeps_what_it_has() {
     let found = minimize(&set, &[5.0, 0.3], &MinimizationSettings::default(), &until(3)).unwrap();
     assert!(found.ending == Ending::Cancelled && found.rounds == 3 && 2.0 * found.cost < start);
 }
+
+#[test]
+fn rounds_that_gained_next_to_nothing_have_found_the_minimum() {
+    let falling = |by: f64| -> Vec<f64> { (0..60).map(|round| 10.0 - by * f64::from(round)).collect() };
+    for (by, ending) in [(1e-5, Ending::Converged), (1e-2, Ending::Rounds)] {
+        assert_eq!(after_all(&falling(by), 10.0 - 60.0 * by, 5e-3), ending);
+    }
+    // A few rounds tell nothing, and nor does a gain that is not asked for.
+    assert_eq!(after_all(&[1.0; 49], 1.0, 5e-3), Ending::Rounds);
+    assert_eq!(after_all(&[1.0; 60], 1.0, 0.0), Ending::Rounds);
+}
