@@ -4,6 +4,7 @@
 use super::judge::BRANCHES;
 use super::options::{FitError, Options};
 use super::outcome::Fit;
+use super::problem::START;
 use super::run::fit_branches;
 use super::verdict::{Reason, Verdict};
 use crate::measured::asked::signs_text;
@@ -13,7 +14,8 @@ use crate::preset::data::COLUMNS;
 use crate::preset::edge::CLOSING_ADHESION;
 use crate::preset::{OtherReading, Preset};
 use crate::progress::{Progress, ProgressPart};
-use crate::units::number::short;
+use crate::units::Quantity;
+use crate::units::number::{said, short};
 
 /// A direction is the better one if its χ² is smaller by this much.
 const CLEAR: f64 = 20.0;
@@ -113,7 +115,10 @@ pub fn fit(
     progress: &dyn Progress,
 ) -> Result<Fit, FitError> {
     let mut found = directed(preset, points, options, progress)?;
-    let Some(at) = found.reasons.iter().position(|reason| reason.kind == BRANCHES) else { return Ok(found) };
+    let Some(at) = found.reasons.iter().position(|reason| reason.kind == BRANCHES) else {
+        found.reasons.splice(0..0, of_pinned_edge(preset, points, (options, &found), progress));
+        return Ok(found);
+    };
     // Whatever the model lacks, two works of adhesion describe it a little better: only a fit shows that they are it.
     let mut apart = options.without_intervals();
     apart.free.push(CLOSING_ADHESION.to_owned());
@@ -128,6 +133,38 @@ pub fn fit(
         found.reasons.insert(if is_described { 0 } else { at }, reason);
     }
     Ok(found)
+}
+
+/// That a retraction alone, which the model does not describe, begins within a dead band, if it is described then.
+fn of_pinned_edge(
+    preset: &Preset,
+    points: &Points,
+    (options, own): (&Options, &Fit),
+    progress: &dyn Progress,
+) -> Option<Reason> {
+    /// What the closing edge is taken to gain, over γ: the less, the longer the line on which the first rows may lie.
+    const LEAST: f64 = 1e-6;
+    let has_law = options.free.iter().any(|key| key.starts_with("edge."));
+    let alone = own.rows.approach.contact == 0;
+    if own.verdict != Verdict::DoesNotDescribe || has_law || !alone {
+        return None;
+    }
+    let mut pinned = preset.clone();
+    if pinned.edge.closing_work_of_adhesion.is_some() {
+        return None;
+    }
+    pinned.set(CLOSING_ADHESION, (LEAST * pinned.material.work_of_adhesion).into()).ok()?;
+    let options = options.without_intervals();
+    let found = directed(&pinned, points, &options, &ProgressPart::new(progress, [1.0, 1.0])).ok()?;
+    let start = found.parameters.iter().find(|parameter| parameter.key == START)?.value;
+    (found.verdict == Verdict::Describes).then(|| {
+        let sentence = format!(
+            "the first rows lie on the straight line of an edge that rests at s = {}: set {CLOSING_ADHESION}, to very little \
+             where it is not known. With that, the model describes the points",
+            said(&preset.units, Quantity::Length, start)
+        );
+        Reason { kind: "dead-band", sentence, value: Some(found.chi_squared) }
+    })
 }
 
 /// The fit in the direction in which the columns run.

@@ -59,6 +59,11 @@ pub trait LeastSquares {
         self.look(u).map(|(residuals, _)| residuals)
     }
 
+    /// Σ m ρ of them, with Huber's loss from `huber` on.
+    fn cost_at(&self, u: &[f64], huber: f64) -> Option<f64> {
+        self.residuals(u).map(|residuals| cost(&residuals, self.counts(), huber))
+    }
+
     /// The residuals at `u` with derivatives.
     fn evaluate(&self, u: &[f64]) -> Option<Evaluated> {
         let (residuals, look) = self.look(u)?;

@@ -325,16 +325,14 @@ fn closing(
     let has_law = targets.iter().any(|target| target.key().starts_with("edge."));
     if !targets.contains(&Target::Key(CLOSING_ADHESION.to_owned())) {
         let given = preset.edge.closing_work_of_adhesion;
-        if given.is_some() && !is_loop {
-            let why = if has(Segment::Approach) {
-                "there is no retraction: the work of adhesion is that of the approach"
-            } else {
-                "there is no approach: where the edge still rests in the first rows, they miss the curve, and data.skip leaves \
-                 them out"
-            };
-            notes.push(format!("{CLOSING_ADHESION} plays no part, as {why}"));
+        let retracts = has(Segment::Retraction);
+        if given.is_some() && !retracts {
+            notes.push(format!(
+                "{CLOSING_ADHESION} plays no part, as there is no retraction: the work of adhesion is that of the approach"
+            ));
         }
-        return Ok(given.filter(|_| is_loop && !has_law).map_or(Closing::Same, Closing::Given));
+        // A retraction alone may begin with a pinned edge too.
+        return Ok(given.filter(|_| retracts && !has_law).map_or(Closing::Same, Closing::Given));
     }
     let refused = |why: &str| Err(FitError::Key { key: CLOSING_ADHESION.to_owned(), why: why.to_owned() });
     if has_law {

@@ -99,7 +99,7 @@ impl<'a> Posed<'a> {
             problem = problem.holding(j, u.remove(j)).ok_or(FitError::NoStart)?;
             solved =
                 last(&mut problem, &u, options.robust, least, &ProgressPart::new(progress, [0.8, 0.85]))?;
-            notes.push("no rows show that the edge is pinned between approach and retraction".to_owned());
+            notes.push("no rows show that the edge is pinned before it recedes".to_owned());
         }
         if let Some(j) = unseen_start(&problem, &solved) {
             (problem, solved) = held_start(&problem, solved, j, |problem, u| {

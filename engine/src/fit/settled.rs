@@ -1,9 +1,9 @@
 //! The last fit, and again where its residuals show another noise than was assumed.
 
-use super::least_squares::{LeastSquares, cost};
+use super::least_squares::LeastSquares;
 use super::options::FitError;
 use super::prior::Prior;
-use super::problem::{FitProblem, START, Target};
+use super::problem::{FitProblem, FreeParameter, START, Target};
 use super::pulled::is_pulled;
 use super::solve::{HUBER, SolvedFit, solve};
 use crate::elementary::ln;
@@ -41,10 +41,24 @@ pub(super) fn last(
     Ok(solved)
 }
 
-/// The number of the contact radius at which an edge is pinned, where the points determine it worse than to a tenth:
-/// then the works of adhesion of both branches are the same, and there is no line between them.
+/// The number of the contact radius at which an edge is pinned, where the points determine it worse than to a tenth, or
+/// allow one that is larger by as much: there is no line between the works of adhesion of both branches then.
 pub(super) fn unpinned(problem: &FitProblem, solved: &SolvedFit) -> Option<usize> {
-    start_of(problem, solved).filter(|_| problem.pins())
+    /// ln of the radius, further out.
+    const FURTHER: f64 = 0.1;
+    /// A larger cost than this, in squares of the scale of the residuals, shows a line.
+    const SHOWN: f64 = 5.0;
+    if !problem.pins() {
+        return None;
+    }
+    let cost = |u: &[f64]| problem.cost_at(u, HUBER * solved.scale);
+    let allows = |j: &usize| {
+        let mut u = solved.minimum.parameters.clone();
+        let least = cost(&u);
+        u[*j] += FURTHER;
+        cost(&u).zip(least).is_some_and(|(cost, least)| cost < least + SHOWN * solved.scale.powi(2))
+    };
+    start_of(problem, solved).or_else(|| start_index(problem).filter(allows))
 }
 
 /// The number of the contact radius at which a pull begins, where the points determine it worse than to a tenth: a slow
@@ -56,8 +70,13 @@ pub(super) fn unseen_start(problem: &FitProblem, solved: &SolvedFit) -> Option<u
 /// The number of the contact radius at which an edge starts, where the points determine it worse than to a tenth.
 fn start_of(problem: &FitProblem, solved: &SolvedFit) -> Option<usize> {
     const LEAST: f64 = 10.0;
-    let j = problem.parameters.iter().position(|parameter| parameter.target == Target::Key(START.to_owned()));
-    j.filter(|j| solved.minimum.at.jacobian.column(*j).norm() < LEAST * solved.scale)
+    let column = |j: &usize| solved.minimum.at.jacobian.column(*j).norm();
+    start_index(problem).filter(|j| column(j) < LEAST * solved.scale)
+}
+
+/// The number of the contact radius at which an edge starts, where that is free.
+fn start_index(problem: &FitProblem) -> Option<usize> {
+    problem.parameters.iter().position(|parameter| parameter.target == Target::Key(START.to_owned()))
 }
 
 /// The nearest minimum where an edge is pinned between approach and retraction: a fit may have moved the radius of that
@@ -74,9 +93,9 @@ pub(super) fn pinned_again(
     const FAR: f64 = 1.05;
     /// A radius less than so many errors away, with all else held, is the same.
     const SAME: f64 = 5.0;
-    let place = |of: &Target| problem.parameters.iter().position(|parameter| parameter.target == *of);
-    let closing = place(&Target::Adhesion(Segment::Approach));
-    let pinned = place(&Target::Key(START.to_owned()));
+    let is_closing = |of: &FreeParameter| of.target == Target::Adhesion(Segment::Approach);
+    let closing = problem.parameters.iter().position(is_closing);
+    let pinned = start_index(&problem);
     let is_there = |u: &[f64]| {
         pinned.is_some_and(|j| {
             let SolvedFit { minimum, scale } = &solved;
@@ -85,7 +104,7 @@ pub(super) fn pinned_again(
     };
     let unseen = unpinned(&problem, &solved).is_some();
     let (judge, from, huber) = (problem.clone(), solved.minimum.parameters.clone(), HUBER * solved.scale);
-    let cost = |u: &[f64]| judge.residuals(u).map(|residuals| cost(&residuals, judge.counts(), huber));
+    let cost = |u: &[f64]| judge.cost_at(u, huber);
     let mut least = cost(&from).unwrap_or(f64::INFINITY);
     let tried = if solved.scale > FAR && closing.is_some() { FACTORS.len() } else { 1 };
     let begun = |(at, factor): (usize, &f64)| {

@@ -131,12 +131,41 @@ fn an_approach_alone_says_which_work_of_adhesion_it_shows() {
     assert!(found.notes.iter().any(|note| note.contains("is that of the approach")), "{:?}", found.notes);
 }
 
-#[test]
-fn a_retraction_alone_says_that_a_given_closing_work_plays_no_part() {
+/// The fit of the retraction of a loop alone, with γ_a given, where the instrument begins to write `late` rows after the turn.
+fn retraction(late: usize) -> Fit {
     let mut given = preset(SPHERE, 1.5, 0.02, "");
     given.set(CLOSING_ADHESION, 0.01.into()).unwrap();
-    let asked = Asked { segment: Some(Segment::Retraction), ..Asked::default() };
-    let options = Options { free: [E, W].map(str::to_owned).to_vec(), asked, ..Options::default() };
-    let found = fit(&given, &pinned(), &options, &Unwatched).unwrap();
-    assert!(found.notes.iter().any(|note| note.contains("as there is no approach")), "{:?}", found.notes);
+    run(&given, &written_late(late), &[E, W])
+}
+
+/// The points of this retraction.
+fn written_late(late: usize) -> Points {
+    let mut points = pinned();
+    let first = 300 + late;
+    points.x.drain(..first);
+    points.force.drain(..first);
+    points.segments.as_mut().unwrap().drain(..first);
+    points
+}
+
+#[test]
+fn a_retraction_alone_may_begin_with_a_pinned_edge() {
+    for skip in [0, 10] {
+        let found = retraction(skip);
+        close(&found, &[1.3, 0.03, MOST], 0.02);
+        assert_eq!(found.verdict, Verdict::Describes, "{skip} {:?}", found.reasons);
+    }
+    let later = retraction(180);
+    close(&later, &[1.3, 0.03], 0.02);
+    assert_eq!(later.verdict, Verdict::Describes, "{:?}", later.reasons);
+    assert!(later.parameters.iter().all(|of| of.key != START), "{:?}", later.parameters);
+    assert!(later.notes.iter().any(|note| note.contains("no rows show")), "{:?}", later.notes);
+}
+
+#[test]
+fn a_retraction_that_begins_with_a_pinned_edge_is_told_so() {
+    let found = run(&preset(SPHERE, 1.5, 0.02, ""), &written_late(0), &[E, W]);
+    assert_eq!(found.verdict, Verdict::DoesNotDescribe);
+    assert_eq!(found.reasons[0].kind, "dead-band", "{:?}", found.reasons);
+    assert!(found.reasons[0].sentence.contains("rests at s = 1.60018: set"), "{:?}", found.reasons[0]);
 }
