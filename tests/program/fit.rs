@@ -3,6 +3,8 @@
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a helper of a test fails the test by panicking")]
 
 use crate::support::home::Home;
+use pulloff::store::{Source, Store};
+use pulloff_engine::fit::residuals::residuals_own;
 use serde_json::Value;
 use std::f64::consts::{PI, TAU};
 use std::fmt::Write as _;
@@ -200,6 +202,15 @@ fn three_speeds_are_fitted_together() {
             "{growth}"
         );
     }
+    // The fitted preset has the rate of the times, and its points lie on its pull.
+    home.run(&["fit", "fast.csv", "soft.toml", "--free", "gamma,v0", "-o", "own.toml"]);
+    let store = Store::at(home.folder(), &[]);
+    let own = store.load::<&str>(&Source::File(home.path("own.toml")), &[]).unwrap().preset;
+    assert!((own.edge.rate.unwrap() / 1e-5 - 1.0).abs() < 0.01, "{:?}", own.edge);
+    let (_, beside) = residuals_own(&own).unwrap();
+    let in_contact: Vec<f64> =
+        beside.iter().filter(|found| !found.datum.free).map(|found| found.residual.abs()).collect();
+    assert!(in_contact.len() > 80 && in_contact.iter().all(|off| *off < 5.0), "{in_contact:?}");
     // A file with another work of adhesion does not follow the law.
     let ended = fit(&["slow.csv", "other.csv"], &[]);
     assert_eq!(ended.status, 4, "{}", ended.err);
@@ -212,9 +223,17 @@ fn three_speeds_are_fitted_together() {
     let ended = fit(&["slow.csv", "fast.csv"], &["--rate", "0.1um/s,1um/s"]);
     let said = "fast.csv: the rate is given as 1 um/s, but the times of the file give 10";
     assert!(ended.status == 2 && ended.err.contains(said), "{}", ended.err);
-    // Without a key of the edge there is no rate.
-    let ended = home.run(&["fit", "slow.csv", "soft.toml", "--free", "E*", "--rate", "7um/s", "--accept"]);
-    assert!(ended.out.contains("--rate plays no part, as no key of edge is fitted"), "{}", ended.out);
+    // A law that is held is that of the curve too, once there is a rate; without a law there is none.
+    let held = |file: &str, more: &[&str]| {
+        let ended = home.run(&[&["fit", file, "soft.toml", "--free", "E*", "--accept"], more].concat());
+        (ended.status, ended.out + &ended.err)
+    };
+    let (status, said) = held("fast.csv", &["--rate", "10um/s"]);
+    assert!(status == 0 && said.contains("verdict: the model describes"), "{said}");
+    let (status, said) = held("slow.csv", &["--rate", "7um/s"]);
+    assert!(status == 2 && said.contains("slow.csv: the rate is given as 7 um/s"), "{said}");
+    let (_, said) = held("slow.csv", &["--rate", "7um/s", "--set", "edge.exponent=none"]);
+    assert!(said.contains("--rate plays no part, as the edge has no law"), "{said}");
     let ended = fit(&["slow.csv", "fast.csv"], &["--residuals", "r.csv"]);
     assert!(ended.status == 2 && ended.err.contains("--together"), "{}", ended.err);
 }

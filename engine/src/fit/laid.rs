@@ -1,6 +1,7 @@
 //! The preset that a fit leaves: its own, with what was found.
 
 use super::problem::{ADHESION, FitProblem, FreeParameter, START, Target};
+use super::pulled::is_pulled;
 use super::uncertain::{uncertain, written};
 use crate::elementary::{log10, pow};
 use crate::measured::{Instrument, Segment};
@@ -62,6 +63,10 @@ pub(super) fn laid(
         if let Some(Err(invalid)) = value.map(|value| laid.set(key, value)) {
             notes.push(format!("{key} could not be set in the preset: {invalid}"));
         }
+    }
+    if is_pulled(found) {
+        // The fitted preset makes the pull that was fitted, also where its rate is that of the times.
+        (laid.edge.rate, laid.path.start) = (found.edge.rate, found.path.start);
     }
     let is_within =
         matches!(laid.path.start, Start::ContactRadius(start) if widest > start * (1.0 + REACHED));

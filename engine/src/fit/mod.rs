@@ -15,6 +15,7 @@
 //! | `rings` | loading with rings of contact, which is left out |
 //! | [`options`] | what is asked for, what can be free, why there is no fit |
 //! | [`pose`] | points and parameters of the requested fit |
+//! | `rates` | the rate at which the points of a retraction are pulled |
 //! | [`start`] | where a fit starts |
 //! | [`solve`] | one fit with its own scale of the noise |
 //! | [`determined`] | covariance, condition, the direction in words |
@@ -65,6 +66,7 @@ pub mod pose;
 pub mod prior;
 pub mod problem;
 mod pulled;
+mod rates;
 pub mod reach;
 pub mod residuals;
 mod rings;

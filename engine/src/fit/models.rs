@@ -81,6 +81,9 @@ impl AdhesionModel {
                 laid.material.adhesion = Adhesion::Dugdale(StatedCohesion::Strength(guess(preset)));
             }
         }
+        if self != Self::Rate {
+            laid.edge.rate = None;
+        }
         match self {
             Self::ShortRange => {}
             Self::Dugdale if free.iter().any(|name| is_of(&RANGE_KEYS, name)) => {}

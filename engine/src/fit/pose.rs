@@ -4,29 +4,24 @@ use super::options::{FitError, Options, target};
 use super::prior::Prior;
 use super::problem::{ADHESION, Datum, FitProblem, FreeParameter, START, Target};
 use super::pulled::is_pulled;
+use super::rates::{keep_retraction, set_rate};
 use super::reach::Reach;
 use super::track::begins;
 use super::uncertain::{Uncertain, uncertain};
-use crate::elementary::hypot;
 use crate::gap::Gap;
 use crate::measured::branches::{MeasuredPoint, median};
 use crate::measured::{Abscissa, Branches, Instrument, Segment};
 use crate::preset::data::DataSpec;
-use crate::preset::edge::CLOSING_ADHESION;
+use crate::preset::edge::{CLOSING_ADHESION, RATE};
 use crate::preset::{BasisSpec, Preset, Value};
-use crate::problem::{Control, Start};
+use crate::problem::Start;
 use crate::units::Quantity;
-use crate::units::number::{said, short, with_unit};
+use crate::units::number::said;
 
 /// The fewest points in contact for each free parameter.
 const PER_PARAMETER: usize = 3;
 /// The number of rows that show where a retraction begins.
 const TURN: usize = 5;
-/// Halves of a record whose rates differ by less than this share have one.
-const EVEN: f64 = 0.05;
-/// Rates agree within so many of their errors, and a stated one within this share of that of the times.
-const AGREE: f64 = 4.0;
-const SAME: f64 = 0.01;
 /// The units of δ₀ and P₀ are their ranges, but at least this.
 const LEAST_UNIT: f64 = f64::MIN_POSITIVE;
 
@@ -56,8 +51,13 @@ pub fn posed(
     if let Some(start) =
         started(&mut bare, (branches, options, closing), (&mut data, offset), &targets, notes)?
     {
-        bare.path.start = start;
-        targets.push(Target::Key(START.to_owned()));
+        let stands = options.free.is_empty() && bare.edge.rate.is_some();
+        if stands && matches!(preset.path.start, Start::ContactRadius(_)) {
+            bare.path.start = preset.path.start;
+        } else {
+            bare.path.start = start;
+            targets.push(Target::Key(START.to_owned()));
+        }
     }
     let loops = has_waves && data.iter().any(|datum| datum.segment == Segment::Approach);
     let known = known(preset, branches, (options, closing))?;
@@ -105,6 +105,13 @@ pub fn posed(
     })
 }
 
+/// Whether the curve of `preset` is a pull at a rate, whichever keys are free.
+fn has_rate(preset: &Preset) -> bool {
+    let edge = &preset.edge;
+    let has_law = edge.exponent.is_some() && edge.reference_speed.is_some();
+    has_law && edge.rate.is_some() && edge.steps.trim().is_empty() && preset.cohesion().is_none()
+}
+
 /// Where the path of a fit starts that follows a pull or has works of adhesion of its own on either branch; `None` for
 /// any other, whose path depends on no start.
 fn started(
@@ -114,18 +121,25 @@ fn started(
     targets: &[Target],
     notes: &mut Vec<String>,
 ) -> Result<Option<Start>, FitError> {
-    if let Some(key) = targets.iter().map(Target::key).find(|key| key.starts_with("edge.")) {
-        return pulled(bare, branches, (data, offset), (&key, options.is_rate_said), notes).map(Some);
+    let retraction = branches.list.iter().filter(|branch| branch.segment == Segment::Retraction);
+    let attached: Vec<&MeasuredPoint> = retraction.flat_map(|branch| &branch.attached).collect();
+    let of_edge = targets.iter().map(Target::key).find(|key| key.starts_with("edge."));
+    let of_rate = has_rate(bare) && !attached.is_empty();
+    if let Some(key) = of_edge.or_else(|| of_rate.then(|| RATE.to_owned())) {
+        keep_retraction(data, notes);
+        // Points beside a curve as it stands are pulled at its rate.
+        if !options.free.is_empty() {
+            set_rate(bare, branches, (&key, options.is_rate_said), notes)?;
+        }
+        return begun(bare, branches, &attached, offset).map(Some);
     }
     bare.edge.rate = None;
     if options.is_rate_said {
-        notes.push("--rate plays no part, as no key of edge is fitted".to_owned());
+        notes.push("--rate plays no part, as the edge has no law of its speed".to_owned());
     }
     if closing == Closing::Same {
         return Ok(None);
     }
-    let retraction = branches.list.iter().filter(|branch| branch.segment == Segment::Retraction);
-    let attached: Vec<&MeasuredPoint> = retraction.flat_map(|branch| &branch.attached).collect();
     begun(bare, branches, &attached, offset).map(Some)
 }
 
@@ -136,45 +150,6 @@ fn priors(known: &[Uncertain], parameters: &[FreeParameter]) -> Vec<Prior> {
         Some(known.prior(&parameters[at], at))
     };
     known.iter().filter_map(of).collect()
-}
-
-/// Makes `bare` a pull at the rate of the retraction and keeps only the points of the retraction; returns where it
-/// starts.
-fn pulled(
-    bare: &mut Preset,
-    branches: &Branches,
-    (data, offset): (&mut Vec<Datum>, f64),
-    (key, is_said): (&str, bool),
-    notes: &mut Vec<String>,
-) -> Result<Start, FitError> {
-    let before = data.len();
-    data.retain(|datum| datum.segment == Segment::Retraction);
-    if data.len() < before {
-        notes.push(format!(
-            "the {} points of the approach are left out: an edge with a speed is fitted to the retraction alone",
-            before - data.len()
-        ));
-    }
-    let refused = |why| FitError::NoRate(key.to_owned(), why);
-    if bare.edge.exponent.is_none() || bare.edge.reference_speed.is_none() {
-        return Err(refused("and first guesses of edge.exponent and edge.reference_speed"));
-    }
-    let retraction = branches.list.iter().filter(|branch| branch.segment == Segment::Retraction);
-    let attached: Vec<&MeasuredPoint> = retraction.flat_map(|branch| &branch.attached).collect();
-    // The times of a file are about that file, and what the preset says is about no file in particular.
-    let is_way = branches.abscissa == Abscissa::Position
-        || bare.path.control == Control::Displacement && branches.abscissa == Abscissa::Approach;
-    let timed = if is_way { even_rate(&attached) } else { None };
-    match (timed, bare.edge.rate) {
-        (None, None) if is_way => return Err(refused("which advance at a constant rate")),
-        (None, None) => return Err(refused("which this file does not have")),
-        (None, Some(_)) if is_way && attached.iter().any(|point| point.time.is_finite()) => {
-            notes.push("the times do not give one constant rate: path.rate is used as given".to_owned());
-        }
-        (None, Some(_)) => {}
-        (Some(timed), stated) => bare.edge.rate = Some(of_times(bare, timed, stated, is_said, notes)?),
-    }
-    begun(bare, branches, &attached, offset)
 }
 
 /// The contact radius at which the points of a retraction begin, according to the first guesses.
@@ -196,61 +171,6 @@ fn begun(
         begins(preset, branches.abscissa, x, branches.ranges[0])
     };
     start.filter(|start| *start > 0.0).map(Start::ContactRadius).ok_or(FitError::NoStart)
-}
-
-/// The rate of a file with times: the stated one where these agree with it.
-fn of_times(
-    preset: &Preset,
-    [rate, error]: [f64; 2],
-    stated: Option<f64>,
-    is_said: bool,
-    notes: &mut Vec<String>,
-) -> Result<f64, FitError> {
-    let text = |rate| said(&preset.units, Quantity::Speed, rate);
-    let margin = with_unit(&preset.units, Quantity::Speed, error, true, |x| short(x, 2));
-    let found = format!("{} ± {margin}", text(rate));
-    let agrees = |stated: &f64| (stated - rate).abs() <= (AGREE * error).max(SAME * rate);
-    match stated {
-        None => notes.push(format!("the times give path.rate = {found}")),
-        Some(stated) if agrees(&stated) => {
-            notes.push(format!("path.rate = {} is used as given; the times give {found}", text(stated)));
-            return Ok(stated);
-        }
-        Some(stated) if is_said => return Err(FitError::Rate { given: text(stated), found }),
-        Some(stated) => notes.push(format!(
-            "the times give path.rate = {found}, which is used, not {} of the preset",
-            text(stated)
-        )),
-    }
-    Ok(rate)
-}
-
-/// The rate of x over the times of a retraction and its standard error, by least squares; `None` where it is not even or
-/// not known.
-fn even_rate(points: &[&MeasuredPoint]) -> Option<[f64; 2]> {
-    // By x, noise would decide which half a row belongs to.
-    let mut in_order = points.to_vec();
-    in_order.sort_by_key(|point| point.at);
-    let (one, two) = in_order.split_at(in_order.len() / 2);
-    let (whole, one, two) = (rate(&in_order)?, rate(one)?, rate(two)?);
-    let margin = (EVEN * whole[0]).max(AGREE * hypot(one[1], two[1]));
-    let is_even = whole[0] > 0.0 && (one[0] - two[0]).abs() < margin;
-    // A rate that may as well be another says nothing.
-    (is_even && AGREE * whole[1] < whole[0]).then_some(whole)
-}
-
-/// −dx/dt and its standard error.
-fn rate(points: &[&MeasuredPoint]) -> Option<[f64; 2]> {
-    let n = points.len() as f64;
-    let mean = |of: fn(&MeasuredPoint) -> f64| points.iter().map(|point| of(point)).sum::<f64>() / n;
-    let [time, x] = [mean(|point| point.time), mean(|point| point.x)];
-    let [tt, tx, xx] = points.iter().fold([0.0; 3], |[tt, tx, xx], point| {
-        let [t, x] = [point.time - time, point.x - x];
-        [tt + t * t, tx + t * x, xx + x * x]
-    });
-    let slope = tx / tt;
-    let left = (xx - slope * tx).max(0.0) / (n - 2.0);
-    (points.len() > 2 && slope.is_finite()).then(|| [-slope, (left / tt).sqrt()])
 }
 
 /// The points that are fitted.
@@ -322,7 +242,7 @@ fn closing(
         let known = uncertain(preset, branches.abscissa, &preset.data.uncertain)?;
         targets.extend(known.into_iter().map(|known| known.target));
     }
-    let has_law = targets.iter().any(|target| target.key().starts_with("edge."));
+    let has_law = has_rate(preset) || targets.iter().any(|target| target.key().starts_with("edge."));
     if !targets.contains(&Target::Key(CLOSING_ADHESION.to_owned())) {
         let given = preset.edge.closing_work_of_adhesion;
         let retracts = has(Segment::Retraction);
@@ -454,53 +374,4 @@ fn parameter(preset: &Preset, branches: &Branches, instrument: &Instrument, targ
         Target::Tilt => (in_file.tilt, Some(force / x)),
     };
     FreeParameter { target, start, scale }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::fit::tests::{Normal, SPHERE, preset};
-
-    /// A retraction of 100 rows at the rate 2, with noise of x.
-    fn rows(noise: f64) -> Vec<MeasuredPoint> {
-        let mut normal = Normal::new(9);
-        let row = |i: usize| {
-            let time = i as f64;
-            let x = 50.0 - 2.0 * time + noise * normal.next();
-            MeasuredPoint { x, force: 0.0, radius: f64::NAN, time, row: i + 1, at: i + 1 }
-        };
-        let mut rows: Vec<MeasuredPoint> = (0..100).map(row).collect();
-        rows.sort_by(|a, b| b.x.total_cmp(&a.x));
-        rows
-    }
-
-    #[test]
-    fn a_rate_is_that_of_all_rows_and_yields_to_one_that_agrees() {
-        for noise in [1e-3, 0.5, 20.0] {
-            let rows = rows(noise);
-            let [rate, error] = even_rate(&rows.iter().collect::<Vec<_>>()).unwrap();
-            // The error of a slope over 100 even rows.
-            let known = noise / (100.0_f64.powi(3) / 12.0).sqrt();
-            assert!((0.8..1.25).contains(&(error / known)), "{error} {known}");
-            assert!((rate - 2.0).abs() < 3.5 * known, "{rate} {known}");
-        }
-        let mut bent = rows(1e-3);
-        for point in &mut bent {
-            point.x -= 0.02 * point.time.powi(2);
-        }
-        assert_eq!(even_rate(&bent.iter().collect::<Vec<_>>()), None);
-        let preset = preset(SPHERE, 1.0, 0.02, "");
-        let taken = |stated, is_said| {
-            let mut notes = Vec::new();
-            let rate = of_times(&preset, [1.99, 0.01], stated, is_said, &mut notes);
-            (rate, notes.join("; "))
-        };
-        assert_eq!(taken(None, false).0, Ok(1.99));
-        assert_eq!(taken(Some(2.0), true).0, Ok(2.0));
-        let (of_preset, said) = taken(Some(3.0), false);
-        assert_eq!(of_preset, Ok(1.99));
-        assert!(said.contains("1.99 ± 0.01, which is used, not 3 of the preset"), "{said}");
-        let why = taken(Some(3.0), true).0.unwrap_err().to_string();
-        assert!(why.contains("given as 3, but the times of the file give 1.99 ± 0.01"), "{why}");
-    }
 }

@@ -51,9 +51,13 @@ pub fn as_typed(x: f64) -> f64 {
     format!("{x:.*e}", TYPED - 1).parse().unwrap_or(x)
 }
 
-/// A loss: four digits, with an exponent if it is small or large, so that losses of very different size align.
+/// A loss: four digits, with an exponent if it is small or large and not zero, so that losses of very different size align.
 pub fn loss(x: f64) -> String {
-    if (0.1..1e5).contains(&x.abs()) { significant(x, 4) } else { format!("{x:.3e}") }
+    match x.abs() {
+        0.0 => "0".to_owned(),
+        0.1..1e5 => significant(x, 4),
+        _ => format!("{x:.3e}"),
+    }
 }
 
 /// `x` with this many decimals; a zero has no sign.

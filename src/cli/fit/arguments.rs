@@ -130,7 +130,7 @@ pub(super) struct Several {
     #[arg(long, conflicts_with_all = ["residuals", "table", "profile", "bootstrap", "poisson"])]
     pub(super) together: bool,
     /// The rate of the device in each file, in order, or one for all; when left out that of the times of a file, or
-    /// path.rate. A rate that the times of a file contradict is refused; without a free key of edge, rates play no part
+    /// path.rate. A rate that the times of a file contradict is refused; without a law of the edge, rates play no part
     #[arg(long, value_name = "RATE,...", value_delimiter = ',')]
     pub(super) rate: Vec<String>,
 }
