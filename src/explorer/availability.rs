@@ -6,6 +6,7 @@ use super::model::Model;
 use super::node::Node;
 use super::status_line::back_or_anew;
 use super::view::{ScreenPanel, Window};
+use pulloff_engine::problem::Begin;
 
 /// Why a command cannot be run, in words.
 pub type Available = Result<(), String>;
@@ -36,7 +37,17 @@ pub(super) fn walker(model: &Model) -> Available {
 pub(super) fn turns(model: &Model) -> Available {
     walker(model)?;
     when(model.curve.as_ref().is_none_or(|curve| curve.along.is_none()), || {
-        format!("the walk follows the path, which turns by itself; {} takes steps back", Id::Undo.named())
+        let undo = Id::Undo.named();
+        match model.preset.path.begin {
+            Begin::Apart => {
+                format!("the walk follows the path, which turns by itself; {undo} takes steps back")
+            }
+            Begin::Disc => {
+                format!(
+                    "the walk follows the unloading: begin = apart walks the whole loop; {undo} takes steps back"
+                )
+            }
+        }
     })
 }
 

@@ -58,7 +58,7 @@ impl Export {
         match self {
             Self::Curve => ("curve", "every point of the equilibrium curve", TABLE),
             Self::Walk => ("walk", "the states walked by hand", TABLE),
-            Self::Events => ("events", "the instabilities listed", TABLE),
+            Self::Events => ("events", "the events of the path; jumps off it are in walk", TABLE),
             Self::Script => ("script", "what was done, for pulloff run", &["pulloff", "txt"]),
             Self::Pull => {
                 let meaning = "the pull at the preset's rate: its moments, or the whole document in a .json";

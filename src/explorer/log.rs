@@ -33,7 +33,9 @@ pub struct LogEntry {
     /// Its number on the path, counted from 1; `None` for a jump walked off the path.
     pub number: Option<usize>,
     pub event: EventReport,
-    /// The node of the walk that it made.
+    /// How often it has happened: an edge that goes back may make a jump again.
+    pub times: u32,
+    /// The newest node of the walk that it made.
     pub node: Option<usize>,
 }
 
@@ -46,12 +48,12 @@ pub struct Log {
 impl Log {
     /// The energy lost so far, and whether a loss without bound is among it.
     pub fn lost(&self) -> (f64, bool) {
-        self.sum(EventMark::Done)
+        sum(self.entries.iter().map(|entry| (entry, entry.times)))
     }
 
     /// The energy that the events passed by would have lost, and whether a loss without bound is among it.
     pub fn passed_by(&self) -> (f64, bool) {
-        self.sum(EventMark::PassedBy)
+        sum(self.entries.iter().filter(|entry| entry.mark == EventMark::PassedBy).map(|entry| (entry, 1)))
     }
 
     /// Whether jumps that are no events of the path are among what is done.
@@ -59,17 +61,16 @@ impl Log {
         self.entries.iter().any(|entry| entry.number.is_none())
     }
 
-    fn sum(&self, mark: EventMark) -> (f64, bool) {
-        let counted = self.entries.iter().filter(|entry| entry.mark == mark);
-        counted.fold((0.0, false), |(sum, unbounded), entry| match entry.event.dissipated {
-            Some(lost) => (sum + lost, unbounded),
-            None => (sum, true),
-        })
-    }
-
     /// The index in the list of the event with this number.
     pub fn place(&self, number: usize) -> Option<usize> {
         self.entries.iter().position(|entry| entry.number == Some(number))
+    }
+
+    /// The index in the list of the event that happened last; `None` where none has.
+    pub fn latest(&self) -> Option<usize> {
+        let made = (0..self.entries.len()).filter(|at| self.entries[*at].node.is_some());
+        let made = made.max_by_key(|at| self.entries[*at].node);
+        made.or_else(|| self.entries.iter().rposition(|entry| entry.times > 0))
     }
 
     /// The event where the walker stands.
@@ -78,14 +79,29 @@ impl Log {
     }
 }
 
-/// Whether an event of the path has happened.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum Happened {
-    NotYet,
-    /// Before the walk began, or by turning round: no node of the walk shows it.
-    Unseen,
-    /// As the jump that this node made.
-    By(usize),
+/// The loss of events that have each happened so many times, and whether one without bound is among them.
+fn sum<'a>(events: impl Iterator<Item = (&'a LogEntry, u32)>) -> (f64, bool) {
+    let happened = events.filter(|(_, times)| *times > 0);
+    happened.fold((0.0, false), |(sum, unbounded), (entry, times)| match entry.event.dissipated {
+        Some(lost) => (sum + f64::from(times) * lost, unbounded),
+        None => (sum, true),
+    })
+}
+
+/// How an event of the path has happened.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+struct Happened {
+    times: u32,
+    /// The last node that it made; `None` before the walk began, and where it was a turn.
+    by: Option<usize>,
+}
+
+impl Happened {
+    const UNSEEN: Self = Self { times: 1, by: None };
+
+    fn is_done(self) -> bool {
+        self.times > 0
+    }
 }
 
 fn is_near(a: f64, b: f64) -> bool {
@@ -171,7 +187,11 @@ impl Model {
                 matches!(&node.kind, NodeKind::Jump(event) if event.kind == passing.event.kind)
                     && node.on_path == Some(passing.after)
             };
-            walk[first..].iter().find(|(_, node)| self.is_on_curve(node) && is_it(node)).map(|(at, _)| *at)
+            let made = walk[first..].iter().filter(|(_, node)| self.is_on_curve(node) && is_it(node));
+            made.fold(Happened::default(), |before, (at, _)| Happened {
+                times: before.times + 1,
+                by: Some(*at),
+            })
         };
         let is_done = |passing: &Passing<'_>| match &passing.event {
             event if event.before.is_none() => true,
@@ -181,15 +201,19 @@ impl Model {
             _ => passing.before < at || passing.before == at && node.kind != NodeKind::Moved,
         };
         let here = passings.iter().position(|passing| !is_done(passing) && passing.before == at);
-        let entries = events.iter().zip(&passings).enumerate().map(|(index, (event, passing))| LogEntry {
-            mark: match (here == Some(index), is_done(passing)) {
-                (true, _) => EventMark::Here,
-                (false, true) => EventMark::Done,
-                (false, false) => EventMark::Ahead,
-            },
-            number: Some(index + 1),
-            event: event.clone(),
-            node: made_by(passing),
+        let entries = events.iter().zip(&passings).enumerate().map(|(index, (event, passing))| {
+            let (is_done, made) = (is_done(passing), made_by(passing));
+            LogEntry {
+                mark: match (here == Some(index), is_done) {
+                    (true, _) => EventMark::Here,
+                    (false, true) => EventMark::Done,
+                    (false, false) => EventMark::Ahead,
+                },
+                number: Some(index + 1),
+                event: event.clone(),
+                times: made.times.max(u32::from(is_done)),
+                node: made.by,
+            }
         });
         Some(Log { entries: entries.collect() })
     }
@@ -201,7 +225,7 @@ impl Model {
         let first = walk.iter().rposition(|(_, node)| node.begins).unwrap_or(0);
         let walk = &walk[first..];
         let of_curve: Vec<&(usize, &Node)> = walk.iter().filter(|(_, node)| self.is_on_curve(node)).collect();
-        let mut done = vec![Happened::NotYet; events.len()];
+        let mut done = vec![Happened::default(); events.len()];
         let is_own = |node: &Node| self.control().is_none_or(|control| node.control == control);
         // How many events lie behind the last state that no event of the path led to.
         let mut passed = 0;
@@ -210,10 +234,10 @@ impl Model {
             let happened = &mut done[..behind];
             match node.kind {
                 // Bodies in contact have come together at some point.
-                NodeKind::Start => happened.fill(Happened::Unseen),
+                NodeKind::Start => happened.fill(Happened::UNSEEN),
                 // Such a state is reached through the events before it.
                 NodeKind::Moved | NodeKind::Limit | NodeKind::Touch(_) if is_on_path && is_own(node) => {
-                    happened.fill(Happened::Unseen);
+                    happened.fill(Happened::UNSEEN);
                 }
                 // Sent elsewhere, or solved again in place for other values: what lies behind did not happen.
                 NodeKind::Moved | NodeKind::Solved | NodeKind::Limit if !self.is_start(node) => {
@@ -224,7 +248,7 @@ impl Model {
         }
         // A jump that is not an event of the path comes after the last event that was done.
         let mut strays: Vec<(usize, LogEntry)> = Vec::new();
-        let mut last = done.iter().rposition(|done| *done != Happened::NotYet).map_or(passed, |at| at + 1);
+        let mut last = done.iter().rposition(|done| done.is_done()).map_or(passed, |at| at + 1);
         for (number, event) in self.walked_events() {
             let Some((_, node)) = of_curve.iter().find(|(of_curve, _)| *of_curve == number) else { continue };
             // What happened under another control is not of this path, and no loss of it.
@@ -234,20 +258,21 @@ impl Model {
                 continue;
             }
             if let Some(at) = events.iter().position(|other| is_same(&event, other)) {
-                done[at] = Happened::By(number);
+                done[at] = Happened { times: done[at].times + 1, by: Some(number) };
                 last = at + 1;
                 passed = last;
                 continue;
             }
             passed = self.passed_by(events, &event);
-            strays.push((last, LogEntry { mark: EventMark::Done, number: None, event, node: Some(number) }));
+            let (mark, node) = (EventMark::Done, Some(number));
+            strays.push((last, LogEntry { mark, number: None, event, times: 1, node }));
             last = last.max(passed);
         }
         let at = self.stands_before(events, &done);
         if let Some(turn) = events.iter().position(|event| event.kind == "turn")
             && self.has_turned(&events[turn], of_curve.iter().map(|(_, node)| *node))
         {
-            done[turn] = Happened::Unseen;
+            done[turn] = Happened::UNSEEN;
         }
         let mut entries = Vec::new();
         let mut strays = strays.into_iter().peekable();
@@ -255,14 +280,14 @@ impl Model {
             while let Some((_, entry)) = strays.next_if(|(after, _)| *after <= index) {
                 entries.push(entry);
             }
-            let mark = match (at == Some(index), done[index]) {
+            let mark = match (at == Some(index), done[index].is_done()) {
                 (true, _) => EventMark::Here,
-                (false, Happened::NotYet) if index < passed => EventMark::PassedBy,
-                (false, Happened::NotYet) => EventMark::Ahead,
-                (false, Happened::Unseen | Happened::By(_)) => EventMark::Done,
+                (false, true) => EventMark::Done,
+                (false, false) if index < passed => EventMark::PassedBy,
+                (false, false) => EventMark::Ahead,
             };
-            let node = if let Happened::By(node) = done[index] { Some(node) } else { None };
-            entries.push(LogEntry { mark, number: Some(index + 1), event: event.clone(), node });
+            let Happened { times, by: node } = done[index];
+            entries.push(LogEntry { mark, number: Some(index + 1), event: event.clone(), times, node });
         }
         entries.extend(strays.map(|(_, entry)| entry));
         Log { entries }
@@ -287,10 +312,19 @@ impl Model {
         let has_jumped = matches!(node.kind, NodeKind::Jump(_));
         events.iter().zip(done).position(|(event, done)| {
             let begins = radius(event.before.as_ref());
-            (*done == Happened::NotYet || !has_jumped)
+            (!done.is_done() || !has_jumped)
                 && event.direction == direction
                 && begins.is_some_and(|begins| is_near(begins, stands))
         })
+    }
+
+    /// The number of the event of the path that begins in the state of the walker, whichever way the walk goes.
+    pub fn event_beginning_here(&self) -> Option<usize> {
+        let node = self.walker().filter(|node| !node.is_apart())?;
+        let stands = node.state.in_units(node.setting.units()).contact_radius;
+        let begins =
+            |event: &EventReport| radius(event.before.as_ref()).is_some_and(|at| is_near(at, stands));
+        self.path_events().iter().find(|event| begins(event)).map(|event| event.number)
     }
 
     /// Whether a walk, whose states these are, has come as far as the turn of the path and goes back.

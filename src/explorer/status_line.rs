@@ -235,8 +235,9 @@ fn happened(model: &Model, node: &Node) -> Option<String> {
                 format!("{what}: apart{}. {start} restarts{whole}", lost.unwrap_or_default())
             }
             _ => {
+                let way = if model.inward { "inward" } else { "outward" };
                 format!(
-                    "Landed{}, stable again. {} runs to the next event, {} undoes",
+                    "Landed{}, stable again. {} runs {way} to the next event, {} undoes",
                     lost.unwrap_or_default(),
                     Id::NextEvent.named(),
                     Id::Undo.named()
@@ -263,7 +264,10 @@ fn event_here(model: &Model) -> Option<String> {
 
 /// At the limit point `node`: where the edge would run and what that would cost.
 fn limit_hint(model: &Model, node: &Node) -> String {
-    let name = event_here(model).unwrap_or_else(|| "Off the path".to_owned());
+    let name = event_here(model).unwrap_or_else(|| match model.event_beginning_here() {
+        Some(number) => format!("Event {number} begins here, and the walk goes the other way"),
+        None => "Off the path".to_owned(),
+    });
     let [next, jump, step] = [Id::NextEvent, Id::Jump, Id::Step].map(Id::named);
     let Some(ahead) = node.ahead else {
         return format!("{name}: {next} or {jump} lets the edge run, {step} goes on along the curve");

@@ -320,7 +320,7 @@ impl Excerpt {
     pub fn words(self) -> [&'static str; 2] {
         match self {
             Self::State => ["state", "the walker's state: δ, P, s and what goes with them"],
-            Self::Events => ["events", "the events listed, tab-separated, for a spreadsheet"],
+            Self::Events => ["events", "the events of the path, tab-separated, for a spreadsheet"],
             Self::Chart => ["chart", "the first chart as text"],
             Self::Screen => ["screen", "the whole screen as text"],
         }

@@ -118,7 +118,11 @@ fn steps_wait_for_a_jump_and_the_way_is_not_turned_round() {
     assert_eq!(session.model.walker().unwrap().state, here);
     assert!(session.status().contains("after the jump"), "{}", session.status());
     session.does(Id::Reverse);
-    assert!(session.model.inward && session.status().contains("turns by itself"), "{}", session.status());
+    assert!(
+        session.model.inward && session.status().contains("begin = apart walks the whole loop"),
+        "{}",
+        session.status()
+    );
     session.does(Id::Jump);
     assert!(session.model.walker().unwrap().state.contact_radius < here.contact_radius);
     session.does(Id::Undo);

@@ -189,3 +189,32 @@ fn selecting_an_event_moves_the_walker_to_its_limit_point() {
             < 1e-9
     );
 }
+
+#[test]
+fn what_is_lost_again_counts_again() {
+    let mut session = Session::new("wavy-sphere");
+    let jumped = |session: &mut Session, ids: &[Id]| {
+        let before = session.model.log().lost().0;
+        session.all(ids);
+        let NodeKind::Jump(event) = session.kind() else { panic!("{:?}", session.kind()) };
+        let node = session.model.walker().unwrap();
+        let lost = event.dissipated.unwrap() * node.setting.units().energy;
+        let after = session.model.log().lost().0;
+        assert!((after - before - lost).abs() <= 1e-9 * after, "{before} {after} {lost}");
+        lost
+    };
+    let jump = [Id::NextEvent, Id::NextEvent];
+    let mut lost = jumped(&mut session, &jump) + jumped(&mut session, &jump);
+    // Back through two jumps that are none of the path, and down again through the first one.
+    session.does(Id::Reverse);
+    lost += jumped(&mut session, &jump) + jumped(&mut session, &jump);
+    session.all(&[Id::Reverse, Id::NextEvent]);
+    assert_eq!(session.model.log().here().unwrap().number, Some(1));
+    assert!((session.model.log().lost().0 - lost).abs() <= 1e-9 * lost);
+    lost += jumped(&mut session, &[Id::NextEvent]);
+    let log = session.model.log();
+    assert_eq!((log.entries[0].times, log.entries[1].times), (2, 1), "{log:?}");
+    assert!((log.lost().0 - lost).abs() <= 1e-9 * lost);
+    assert_eq!(log.latest(), Some(0), "{log:?}");
+    assert!(session.model.history.current().is_some());
+}

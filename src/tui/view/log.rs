@@ -27,10 +27,8 @@ pub fn draw(frame: &mut Frame<'_>, area: Rect, app: &App) {
     let (model, theme) = (&app.model, app.theme);
     let log = model.log();
     let selected = is_selected(app, ScreenPanel::Log);
-    let head = title(model, &log, theme, usize::from(area.width));
-    let room = usize::from(area.width).saturating_sub(head.chars().count() + 4);
-    let block = panel(theme, &head, selected)
-        .title_top(Line::styled(theme.text(&sums(model, &log, room)), theme.strong()).right_aligned());
+    let (head, sums) = title(model, &log, theme, usize::from(area.width));
+    let block = panel(theme, &head, selected).title_top(Line::styled(sums, theme.strong()).right_aligned());
     let inner = block.inner(area);
     frame.render_widget(block, area);
     let room = usize::from(inner.width);
@@ -48,26 +46,33 @@ pub fn draw(frame: &mut Frame<'_>, area: Rect, app: &App) {
     }
     let count = log.entries.len() + parts.len();
     let shown = shown(&log, model, count, rows);
-    let (first, last) = (shown.first().copied().unwrap_or(0), shown.last().map_or(0, |last| last + 1));
-    // How many events, and how many inadmissible parts after them, are left out above and below.
+    // How many events, and how many inadmissible parts after them, are left out above the first line and below each.
     let events = log.entries.len();
     let left_out = |[from, to]: [usize; 2]| {
         let of = [to.min(events) - from.min(events), to.max(events) - from.max(events)];
         let texts = [(" +", of[0]), (" !", of[1])].map(|(sign, count)| format!("{sign}{count}"));
         texts.into_iter().zip(of).filter(|(_, count)| *count > 0).map(|(text, _)| text).collect::<String>()
     };
-    let [above, below] = [[0, first], [last, count]].map(left_out);
-    let width = room - above.len().max(below.len());
+    let first = shown.first().copied().unwrap_or(0);
+    let mut more: Vec<String> = shown
+        .iter()
+        .zip(shown.iter().skip(1).chain([&count]))
+        .map(|(i, next)| left_out([i + 1, *next]))
+        .collect();
+    if let Some(below) = more.first_mut() {
+        below.insert_str(0, &left_out([0, first]));
+    }
+    let width = room - more.iter().map(String::len).max().unwrap_or(0);
     let texts = table(model, theme, &log.entries, first, width.saturating_sub(1));
     let units = &model.preset.units;
     let texts: Vec<String> =
         texts.into_iter().chain(parts.iter().map(|found| part(found, units, theme.ascii))).collect();
-    lines.extend(shown.into_iter().filter_map(|i| Some((i, texts.get(i)?))).map(|(i, text)| {
+    let rows = shown.into_iter().zip(more).filter_map(|(i, more)| Some((i, more, texts.get(i)?)));
+    lines.extend(rows.map(|(i, more, text)| {
         let chosen = i == model.event && selected;
         let mark = if chosen { '>' } else { ' ' };
         let text = theme.whole_words(&theme.text(&format!("{mark}{text}")), width);
-        let more = if i + 1 == last { &below } else { &above };
-        let text = if i == first || i + 1 == last { format!("{text:<width$}{more}") } else { text };
+        let text = if more.is_empty() { text } else { format!("{text:<width$}{more}") };
         let style = match log.entries.get(i).map(|entry| entry.mark) {
             _ if chosen => theme.selection(),
             Some(EventMark::Here) => theme.strong(),
@@ -85,8 +90,7 @@ pub fn draw(frame: &mut Frame<'_>, area: Rect, app: &App) {
 
 /// The lines shown: those around the selected one, and always the one where the walker stands, or the next one.
 fn shown(log: &Log, model: &Model, count: usize, rows: usize) -> Vec<usize> {
-    let next =
-        || log.entries.iter().rposition(|entry| entry.mark == EventMark::Done).map_or(0, |done| done + 1);
+    let next = || log.latest().map_or(0, |latest| latest + 1);
     let here = log.entries.iter().position(|entry| entry.mark == EventMark::Here).unwrap_or_else(next);
     // The last event done stays in sight.
     let above = if model.panel == ScreenPanel::Log { model.event + 1 } else { here + 2 };
@@ -119,8 +123,9 @@ fn part(part: &Inadmissible, units: &UnitSystem, ascii: bool) -> String {
     format!("! inadmissible {}{wave}", part.report.text(units, ascii))
 }
 
-/// The meaning of the marks, and whether all of it belongs to earlier values.
-fn title(model: &Model, log: &Log, theme: Theme, width: usize) -> String {
+/// The meaning of the marks, and whether all of it belongs to earlier values; and beside it the sums. These have more to
+/// say where there is no room for both.
+fn title(model: &Model, log: &Log, theme: Theme, width: usize) -> (String, String) {
     let is_old = model.preset.path.begin == Begin::Apart
         && model.cycle().is_some_and(|cycle| !cycle.is_of_preset(&model.preset));
     let old = if is_old { ", for the old values" } else { "" };
@@ -133,7 +138,14 @@ fn title(model: &Model, log: &Log, theme: Theme, width: usize) -> String {
         mark(theme, EventMark::Here),
         mark(theme, EventMark::Ahead)
     );
-    if marks.chars().count() + 30 < width { marks } else { format!("Log{old}") }
+    let beside = |head: String| {
+        let room = width.saturating_sub(head.chars().count() + 4);
+        let sums = theme.text(&sums(model, log, room));
+        (head, sums)
+    };
+    let is_wide = marks.chars().count() + 30 < width;
+    let with_marks = Some(marks).filter(|_| is_wide).map(beside);
+    with_marks.filter(|(_, sums)| !sums.is_empty()).unwrap_or_else(|| beside(format!("Log{old}")))
 }
 
 fn mark(theme: Theme, mark: EventMark) -> &'static str {
@@ -145,13 +157,13 @@ fn mark(theme: Theme, mark: EventMark) -> &'static str {
     }
 }
 
-/// The largest pull, the energy lost up to here, the loss over the whole path and what was passed by, as much of it as fits.
+/// The largest pull, the energy lost up to here, the loss over the whole path and what was passed by, as much of it as
+/// fits; empty where nothing does.
 fn sums(model: &Model, log: &Log, room: usize) -> String {
     let Some(path) = model.path() else { return String::new() };
     let units = &model.preset.units;
     let energy = |lost: f64, unbounded: bool| {
-        let lost = units.shown(Quantity::Energy, lost).number;
-        let text = if lost == 0.0 { "0".to_owned() } else { loss(lost) };
+        let text = loss(units.shown(Quantity::Energy, lost).number);
         format!("{text}{}", if unbounded { "+" } else { "" })
     };
     let (so_far, unbounded) = log.lost();
@@ -367,6 +379,8 @@ fn cells(
         Some(lost) => loss(units.shown(Quantity::Energy, lost).number),
         None => "no bound".to_owned(),
     };
+    let times =
+        if entry.times > 1 { format!(" {}{}", theme.glyph("×", "x"), entry.times) } else { String::new() };
     let fault = if event.admissible == Some(false) { " !" } else { "" };
     // What is held does not change.
     let (delta_after, load_after) = match control {
@@ -384,7 +398,7 @@ fn cells(
         radius,
         radius_after,
         crests,
-        format!("{lost}{fault}{}", if disagrees(event) { " ?" } else { "" }),
+        format!("{lost}{times}{fault}{}", if disagrees(event) { " ?" } else { "" }),
     ]
 }
 

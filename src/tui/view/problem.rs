@@ -159,9 +159,13 @@ pub(super) fn shown(app: &App) -> Vec<ShownValue> {
         let error = model.fitted_error(&row.key);
         let number = |label, x| {
             let texts = numbers(theme, units, &row, x, error);
-            let shortest = texts.last().map_or(0, |text| text.chars().count());
+            let length = |text: Option<&String>| text.map_or(0, |text| text.chars().count());
             let unit = row.unit_in(units).map_or(0, |unit| unit.ascii().chars().count() + 1);
-            let width = if error.is_some() { shortest } else { shortest.max(NUMBER + unit) };
+            // An error has both of its digits, and a space before the next cell.
+            let width = match error {
+                Some(_) => length(texts.first()) + 1,
+                None => length(texts.last()).max(NUMBER + unit),
+            };
             ShownValue::new(label, width, |room| fitting(&texts, room))
         };
         match value {

@@ -199,12 +199,15 @@ fn beside(
     let counts = [path, other].map(|path| Some(snaps(path) as f64));
     lines.push(row("snaps", counts));
     let units = &model.preset.units;
-    let lost = totals.map(|totals| totals.dissipated.map(|lost| units.shown(Quantity::Energy, lost).number));
+    let energy = |lost| units.shown(Quantity::Energy, lost).number;
+    let lost = totals.map(|totals| totals.dissipated.map(energy));
     if let [Some(_), Some(_)] = lost {
         lines.push(row("W", lost));
     } else {
-        let [now, was] = lost.map(|lost| lost.map_or_else(|| "no bound".to_owned(), cell));
-        lines.push(head(" W".to_owned(), &now, &was, ""));
+        // What is lost after it has no bound, or is not known where a path ends early.
+        let at_least = totals.map(|totals| format!("{:.1e}+", energy(totals.dissipated_before_last_contact)));
+        let text = |at: usize| lost[at].map_or_else(|| at_least[at].clone(), cell);
+        lines.push(head(" W".to_owned(), &text(0), &text(1), ""));
     }
     lines
 }

@@ -33,7 +33,7 @@ fn sentences_name_the_keys_of_a_person() {
     says(&screen, ": F2 or J lets the edge snap to");
     says(&screen, "F3 goes on, unstable");
     screen.keys("J");
-    says(&screen, "F2 runs to the next event, F4 undoes");
+    says(&screen, "F2 runs inward to the next event, F4 undoes");
     screen.press(KeyCode::F(9));
     says(&screen, ":pins removes it");
     screen.press(KeyCode::F(5));
