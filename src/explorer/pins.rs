@@ -8,7 +8,8 @@ use pulloff_engine::case::Case;
 use pulloff_engine::preset::model::BasisSpec;
 use pulloff_engine::preset::schema::NONE;
 use pulloff_engine::preset::{Preset, Row, Value};
-use pulloff_engine::problem::Control;
+use pulloff_engine::problem::{Begin, Control};
+use pulloff_engine::report::PathReport;
 use pulloff_engine::report::number::{difference, short};
 use pulloff_engine::ritz::{NewtonSettings, solve};
 use pulloff_engine::units::UnitSystem;
@@ -42,6 +43,8 @@ pub struct Pin {
     pub number: usize,
     /// The curve, with the preset it was computed from.
     pub curve: Arc<CurveData>,
+    /// The loop, where the walk of its values follows one.
+    pub whole: Option<Arc<PathReport>>,
     /// If either it or the curve beside it uses ring elements and the other is exact: how accurate the elements are.
     pub elements: Option<Elements>,
 }
@@ -84,6 +87,14 @@ impl Elements {
 }
 
 impl Pin {
+    fn new(number: usize, curve: Arc<CurveData>, elements: Option<Elements>) -> Self {
+        let preset = &curve.setting.preset;
+        let along = curve.along.as_ref().filter(|_| preset.path.begin == Begin::Apart);
+        let along = along.and_then(|along| along.as_ref().ok());
+        let whole = along.map(|along| Arc::new(PathReport::new(preset, &curve.case, along)));
+        Self { number, curve, whole, elements }
+    }
+
     /// The preset the curve was computed from.
     pub fn preset(&self) -> &Preset {
         &self.curve.setting.preset
@@ -126,7 +137,7 @@ impl Pins {
         let Some(at) = self.awaited.iter().position(|(awaited, _)| *awaited == number) else { return false };
         self.awaited.remove(at);
         if let Some((curve, elements)) = curve {
-            self.shown.push(Pin { number, curve, elements });
+            self.shown.push(Pin::new(number, curve, elements));
             self.shown.sort_by_key(|pin| pin.number);
         }
         true
@@ -192,7 +203,7 @@ impl Pins {
             return Err(format!("the same values are pinned as {}", letter(number)));
         }
         let number = self.free()?;
-        self.shown.push(Pin { number, curve: Arc::clone(curve), elements: None });
+        self.shown.push(Pin::new(number, Arc::clone(curve), None));
         self.shown.sort_by_key(|pin| pin.number);
         Ok(number)
     }

@@ -20,30 +20,46 @@ use ratatui::widgets::Paragraph;
 pub fn draw(frame: &mut Frame<'_>, area: Rect, app: &App) {
     let (model, theme) = (&app.model, app.theme);
     let pinned = model.pins.beside(&model.preset).0.pop();
-    let pinned = pinned.and_then(|pin| Some((pin, pin.curve.report.as_ref()?)));
-    let title = title(model, pinned.map(|(pin, _)| pin), usize::from(area.width.saturating_sub(2)));
+    let pinned = pinned.and_then(|pin| Some((pin, Compared::of(model, pin)?)));
+    let title = title(model, pinned.as_ref(), usize::from(area.width.saturating_sub(2)));
     let block = panel(theme, &title, is_selected(app, ScreenPanel::Result));
     let inner = block.inner(area);
     frame.render_widget(block, area);
     let lines = match (model.path(), pinned) {
-        (Some(path), Some(pinned)) => beside(theme, model, unloading(model).unwrap_or(path), pinned),
+        (Some(_), Some((pin, compared))) => beside(theme, model, pin, &compared),
         (Some(path), None) => lines(theme, model, path, usize::from(inner.width)),
         (None, _) => vec![Line::styled(" no path yet", theme.dim())],
     };
     frame.render_widget(Paragraph::new(lines), inner);
 }
 
-/// The unloading from the start where the path is a loop: a pin has no loop to compare with.
-fn unloading(model: &Model) -> Option<&PathReport> {
-    model.path().filter(|path| path.turn.is_some())?;
-    model.curve.as_ref()?.report.as_ref()
+/// Two paths of the same kind.
+struct Compared<'a> {
+    now: &'a PathReport,
+    pin: &'a PathReport,
+    /// What is compared, where that is not the path of the screen, or may be taken for another one.
+    name: Option<&'static str>,
+}
+
+impl<'a> Compared<'a> {
+    /// The path and that of the pin: two loops, or the unloadings from the start where one of them has none.
+    fn of(model: &'a Model, pin: &'a Pin) -> Option<Self> {
+        let now = model.path()?;
+        let is_loop = now.turn.is_some();
+        if let Some(pin) = pin.whole.as_deref().filter(|_| is_loop) {
+            return Some(Self { now, pin, name: Some("Loop") });
+        }
+        let of_curve = model.curve.as_ref().and_then(|curve| curve.report.as_ref());
+        let now = if is_loop { of_curve.unwrap_or(now) } else { now };
+        Some(Self { now, pin: pin.curve.report.as_ref()?, name: is_loop.then_some("Unloading") })
+    }
 }
 
 /// Its name; that its numbers are not those of the pull at a rate; and beside a pin, what the rows are given in, as much
 /// as fits.
-fn title(model: &Model, pin: Option<&Pin>, room: usize) -> String {
+fn title(model: &Model, pinned: Option<&(&Pin, Compared<'_>)>, room: usize) -> String {
     let is_pulled = model.is_pulled();
-    let (Some(pin), Some(curve)) = (pin, model.curve.as_deref()) else {
+    let (Some((pin, compared)), Some(curve)) = (pinned, model.curve.as_deref()) else {
         return if is_pulled { "Result, quasi-static" } else { "Result" }.to_owned();
     };
     let scale = common(model, curve, &pin.curve);
@@ -54,12 +70,8 @@ fn title(model: &Model, pin: Option<&Pin>, room: usize) -> String {
     let [length, force, radius] = scale.state_axes();
     // Otherwise it would be taken for P/Pc, which it is without a pin.
     let is_raw = scale.force.is_none() && Scale::of(curve, model.axes).force.is_some();
-    let mut title = match (is_pulled, unloading(model)) {
-        (true, _) => "Result q-static",
-        (false, Some(_)) => "Unloading",
-        (false, None) => "Result",
-    }
-    .to_owned();
+    let name = if is_pulled { "Result q-static" } else { compared.name.unwrap_or("Result") };
+    let mut title = name.to_owned();
     for axis in [force, length, radius, energy] {
         let unit = if axis.shown.is_empty() { String::new() } else { format!(" {}", axis.shown) };
         let is_raw = is_raw && axis.symbol == "P" && unit.is_empty();
@@ -158,12 +170,8 @@ const NAME: usize = 4;
 const COLUMNS: [usize; 3] = [8, 8, 7];
 
 /// The same numbers in columns, beside those of the newest pin.
-fn beside(
-    theme: Theme,
-    model: &Model,
-    path: &PathReport,
-    (pin, other): (&Pin, &PathReport),
-) -> Vec<Line<'static>> {
+fn beside(theme: Theme, model: &Model, pin: &Pin, compared: &Compared<'_>) -> Vec<Line<'static>> {
+    let Compared { now: path, pin: other, .. } = *compared;
     let Some(curve) = model.curve.as_deref() else { return Vec::new() };
     let scale = common(model, curve, &pin.curve);
     let [now_width, pin_width, change_width] = COLUMNS;
@@ -195,11 +203,17 @@ fn beside(
         lines.push(row("  \u{3b4}", both(&|at| scale.length(at.approach))));
         lines.push(row("  s", both(&|at| scale.radius(at.contact_radius))));
     }
-    #[expect(clippy::cast_precision_loss)]
-    let counts = [path, other].map(|path| Some(snaps(path) as f64));
-    lines.push(row("snaps", counts));
     let units = &model.preset.units;
     let energy = |lost| units.shown(Quantity::Energy, lost).number;
+    let bands = totals.map(|totals| totals.dead_band.map(|band| energy(band.dissipated)));
+    // The panel has no line more than without one.
+    if bands == [None, None] {
+        #[expect(clippy::cast_precision_loss)]
+        let counts = [path, other].map(|path| Some(snaps(path) as f64));
+        lines.push(row("snaps", counts));
+    } else {
+        lines.push(row("band", bands));
+    }
     let lost = totals.map(|totals| totals.dissipated.map(energy));
     if let [Some(_), Some(_)] = lost {
         lines.push(row("W", lost));

@@ -1,6 +1,7 @@
 //! Pinned curves on the screen.
 
 use super::*;
+use pulloff_engine::report::path::TotalsReport;
 
 #[test]
 fn a_state_of_a_pinned_curve_leads_to_the_present_one_which_is_told() {
@@ -35,6 +36,28 @@ fn a_pin_beside_a_loop_is_compared_by_its_unloading() {
         let [now, pin] = [0, 1].map(|at| row.split_whitespace().nth(at).unwrap());
         assert_eq!(now, pin, "{name}: {text}");
     }
+}
+
+#[test]
+fn loops_with_a_dead_band_are_compared_as_loops() {
+    let mut screen = Screen::new("fig-9-cycle");
+    screen.keys(":set gamma_a=0.003\rp:set gamma_a=0.002\r");
+    let text = screen.text(120, 40);
+    assert!(text.contains("Loop P/Pc δ/R s/λ W"), "{text}");
+    let model = &screen.app.model;
+    let now = &model.path().unwrap().totals;
+    let pin = &model.pins.all()[0].whole.as_ref().unwrap().totals;
+    let band = |of: &TotalsReport| of.dead_band.unwrap().dissipated;
+    for (name, values) in
+        [("band", [band(now), band(pin)]), ("W ", [now, pin].map(|of| of.dissipated.unwrap()))]
+    {
+        let row = text.lines().find_map(|line| line.strip_prefix(&format!("│ {name}"))).unwrap();
+        for (at, value) in values.into_iter().enumerate() {
+            let shown: f64 = row.split_whitespace().nth(at).unwrap().parse().unwrap();
+            assert!((shown / value - 1.0).abs() < 6e-3, "{name} {value}: {text}");
+        }
+    }
+    assert!(band(now) > 1.2 * band(pin));
 }
 
 #[test]
