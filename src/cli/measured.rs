@@ -40,7 +40,8 @@ pub(super) struct ReadingArguments {
     /// Use only one branch of the curve
     #[arg(long, value_enum)]
     segment: Option<BranchChoice>,
-    /// Which rows are out of contact, as a range of x in the file's own numbers: x=LO..HI, or none where all are in contact
+    /// Which rows are out of contact, as a range of x with the sign and zero of the file: x=LO..HI, or none where all are in
+    /// contact. A number without a unit is in base units
     #[arg(long, value_name = "x=LO..HI", allow_hyphen_values = true)]
     free_part: Option<String>,
     /// The direction of the columns, where the points do not show it: x=-,force=+ reverses the sign of x only

@@ -33,9 +33,16 @@ pub(super) fn walker(model: &Model) -> Available {
     when(model.history.current().is_some(), || no_curve(model))
 }
 
+/// Requires a state of the walk in which the bodies are not apart.
+pub(super) fn goes_on(model: &Model) -> Available {
+    walker(model)?;
+    let is_apart = model.history.current().is_some_and(Node::is_apart);
+    when(!is_apart, || format!("the bodies are apart: {}", back_or_anew()))
+}
+
 /// Requires a state of a walk that may turn round; along a path, the walk follows the device.
 pub(super) fn turns(model: &Model) -> Available {
-    walker(model)?;
+    goes_on(model)?;
     when(model.curve.as_ref().is_none_or(|curve| curve.along.is_none()), || {
         let undo = Id::Undo.named();
         match model.preset.path.begin {
@@ -58,11 +65,8 @@ pub(super) fn walker_or_no_curve(model: &Model) -> Available {
 
 /// Requires a state in which an edge can run.
 pub(super) fn jump(model: &Model) -> Available {
-    let is_apart = model.history.current().is_some_and(Node::is_apart);
+    goes_on(model)?;
     when(model.can_jump(), || {
-        if is_apart {
-            return format!("the bodies are apart: {}", back_or_anew());
-        }
         format!("the state is stable: the edge stays; {} runs to the next event", Id::NextEvent.named())
     })
 }

@@ -33,8 +33,8 @@ fn a_bad_assignment_names_the_key_and_what_was_meant() {
         ("path.control=load", ["path.control", "displacement"]),
         ("path.end_contact_radius=0.6", ["path.end_contact_radius", "0.5"]),
         ("material.work_of_adhesion=nan", ["material.work_of_adhesion", "out of range"]),
-        // A group of the same name has a value where no range is given.
-        ("adhesion=dugdale", ["short for several", "material.adhesion, groups.adhesion"]),
+        // A key of the preset comes before a group of the same name.
+        ("adhesion=3", ["adhesion=3: material.adhesion", "short-range"]),
         ("nothing", ["KEY=VALUE", "nothing"]),
     ] {
         for command in ["trace", "unload"] {

@@ -252,6 +252,8 @@ fn rows_are_mended_by_hand_and_counted() {
         assert_eq!(ended.status, 0, "{more:?}: {}", ended.err);
         serde_json::from_str::<Value>(&ended.out).unwrap()
     };
+    let idle = fit(&["--range", "x=-40..90"])["warnings"].to_string();
+    assert!(idle.contains("from -4e7 um to 9e7 um leaves no row out: the rows have "), "{idle}");
     // Rows between the jump of the approach and the named part are neither in contact nor apart.
     let named = fit(&["--free-part", "x=..9um"]);
     let (approach, rows) = (&named["rows"]["approach"], &named["rows"]);

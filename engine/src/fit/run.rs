@@ -10,12 +10,12 @@ use super::least_squares::Ending;
 use super::options::{FitError, Options};
 use super::outcome::Fit;
 use super::pose::posed;
-use super::problem::{ADHESION, FitProblem, FreeParameter, Target};
+use super::problem::{ADHESION, FitProblem, FreeParameter, Paths, Target};
 use super::pulled::is_pulled;
 use super::residuals::{beside, of_part};
 use super::rows::Rows;
 use super::scatter::Scatter;
-use super::settled::{last, of_correlated, of_tare, pinned_again, unpinned, unseen_start};
+use super::settled::{beyond_snaps, last, of_correlated, of_tare, pinned_again, unpinned, unseen_start};
 use super::shown::{KnownNoise, of_shown_noise};
 use super::solve::SolvedFit;
 use super::start::{Tried, start};
@@ -111,6 +111,11 @@ impl<'a> Posed<'a> {
                     "the points do not show at which contact radius the edge started: it is held at {at}"
                 ));
             }
+        }
+        let has_snaps =
+            |paths: &Paths| [Segment::Approach, Segment::Retraction].iter().any(|of| paths.of(*of).snaps > 0);
+        if problem.paths(&solved.minimum.parameters).is_some_and(|paths| has_snaps(&paths)) {
+            solved = beyond_snaps(&problem, solved, options.robust, progress);
         }
         let [of_way, of_force, _] = branches.noise.from;
         let known = KnownNoise {

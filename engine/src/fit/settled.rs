@@ -126,6 +126,37 @@ pub(super) fn pinned_again(
     (problem, solved)
 }
 
+/// The nearest minimum where snaps lie among the points: each row that changes its side of a snap has a minimum of its
+/// own. Each value in turn is moved away by more errors than chance does, and fitted again.
+pub(super) fn beyond_snaps(
+    problem: &FitProblem,
+    mut solved: SolvedFit,
+    robust: bool,
+    progress: &dyn Progress,
+) -> SolvedFit {
+    /// How many errors, all else held.
+    const AWAY: [f64; 2] = [-8.0, 8.0];
+    let huber = HUBER * solved.scale;
+    let cost = |u: &[f64]| problem.cost_at(u, huber);
+    let from = solved.minimum.parameters.clone();
+    let weights = solved.minimum.at.jacobian.tr_mul(&solved.minimum.at.jacobian);
+    let Some((covariance, mut least)) = weights.try_inverse().zip(cost(&from)) else { return solved };
+    let errors: Vec<f64> =
+        covariance.diagonal().iter().map(|variance| solved.scale * variance.sqrt()).collect();
+    for (j, away) in (0..from.len()).flat_map(|j| AWAY.map(|away| (j, away))) {
+        let mut u = from.clone();
+        u[j] += away * errors[j];
+        if progress.stop() || !u[j].is_finite() {
+            continue;
+        }
+        let Some(again) = solve(problem, &u, robust, ROUNDS, progress) else { continue };
+        if let Some(found) = cost(&again.minimum.parameters).filter(|found| *found < least) {
+            (solved, least) = (again, found);
+        }
+    }
+    solved
+}
+
 /// Fits again where the noise is correlated from row to row: σ is then larger than differences of neighbours tell, by
 /// 1/√(1 − r), with r the correlation of neighbours.
 pub(super) fn of_correlated(

@@ -80,9 +80,10 @@ pub(super) fn key_anywhere(
         .unwrap_or_else(|| Err(unknown_key(name, shape)))
 }
 
-/// The only one of `keys`; `None` where there are none.
+/// The only one of `keys`, of which a key of the preset comes before a group of the same name; `None` where there are
+/// none.
 fn one(name: &str, keys: impl Iterator<Item = Key>) -> Option<Result<Key, Invalid>> {
-    let keys: Vec<Key> = keys.collect();
+    let keys = preferred(keys.collect(), |key| groups::row(key).is_none());
     match &keys[..] {
         [] => None,
         [key] => Some(Ok(key.clone())),

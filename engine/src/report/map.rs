@@ -7,6 +7,7 @@ use crate::case::Case;
 use crate::preset::{BasisSpec, Preset};
 use crate::problem::{Control, Units};
 use crate::progress::{Progress, ProgressPart, Stopped};
+use crate::stability::axis::COMPLIANCE;
 use crate::stability::{Counts, Family, FamilyError, Folds, Map, MapAxis, MapPoint, Onset, Sort, Spacing};
 use serde::Serialize;
 
@@ -120,15 +121,15 @@ pub struct MapReport {
     /// The head of the document.
     #[serde(flatten)]
     pub head: Head,
-    /// What is controlled.
-    pub control: Control,
+    /// What is controlled; null where that changes over an axis.
+    pub control: Option<Control>,
     /// The axes.
     pub x: AxisReport,
     /// The ordinate.
     pub y: AxisReport,
     /// Remarks on the lines.
     pub notes: Vec<String>,
-    /// Where snaps begin; null for a gap without a wave, and where there are none.
+    /// Where snaps begin; null for a gap without a wave, where there are none, and where an axis is the device.
     pub onset: Option<OnsetReport>,
     /// The points of the lines, line by line.
     pub rows: Vec<MapRow>,
@@ -187,9 +188,11 @@ impl MapReport {
         progress: &dyn Progress,
     ) -> Result<Self, MapError> {
         let case = Case::prepare(preset, &ProgressPart::new(progress, [0.0, 0.1]))?;
+        let is_device = |key: &str| key == COMPLIANCE || key.starts_with("path.control");
+        let has_device = is_device(&x.key) || matches!(y, Ordinate::Key(axis) if is_device(&axis.key));
         let mut report = Self {
             head: Head::new("map", preset, &case),
-            control: preset.path.control,
+            control: (!has_device).then_some(preset.path.control),
             x: AxisReport::of(&x),
             y: AxisReport {
                 key: y.name().to_owned(),
@@ -207,7 +210,7 @@ impl MapReport {
             report.notes.push(EXACT.to_owned());
         }
         report.notes.extend(case.warning_of_dead_band());
-        let found = Onset::of(preset, progress)?;
+        let found = if has_device { None } else { Onset::of(preset, progress)? };
         report.onset = found.map(|onset| OnsetReport {
             amplitude_over_wavelength: onset.amplitude_over_wavelength,
             control: preset.path.control,

@@ -53,7 +53,8 @@ pub struct FitArguments {
     pub(super) several: Several,
     #[command(flatten)]
     pub(super) reading: ReadingArguments,
-    /// Use only rows in this range, in the file's own numbers: x=LO..HI or force=LO..HI (repeatable)
+    /// Use only rows in this range, with the signs and zeros of the file: x=LO..HI or force=LO..HI (repeatable). A number
+    /// without a unit is in base units
     #[arg(long, value_name = "x=LO..HI", allow_hyphen_values = true)]
     pub(super) range: Vec<String>,
     /// Standard deviation of x; when left out that of the free part, or the last digit, at least 1e-4 of the range

@@ -11,15 +11,15 @@ macro_rules! each_command {
     ($make:ident) => {
         $make! {
     "Walk along the curve" {
-        Step "step" "Space" "step" walker Curve Yes "one step along the equilibrium curve, past limit points too"
+        Step "step" "Space" "step" goes_on Curve Yes "one step along the equilibrium curve, past limit points too"
             { run: |model| walk(model, Action::Steps(1)),
             takes: takes("number of steps", |rest| Ok(Command::Steps(rest.count("a number of steps", MOST_STEPS)?))) }
-        NextEvent "next-event" "n" "next event" walker Curve Yes
+        NextEvent "next-event" "n" "next event" goes_on Curve Yes
             "to the next event of the path; at a limit point or a touch, let it happen" { run: next_event }
         Jump "jump" "x" "jump" jump Curve Yes
             "let edges run at constant control to the next stable state; from a touch, with the new contact"
             { run: |model| walk(model, Action::Jump) }
-        Run "run" "r" "run" walker Curve Yes
+        Run "run" "r" "run" goes_on Curve Yes
             "run at a watchable pace to the next limit point or touch; any key but the pace keys pauses"
             { words: "animate play", run: run_or_stop,
             takes: takes("number of states", |rest| Ok(Command::RunOf(rest.count("a number of states", MOST_STEPS)?))) }
@@ -50,8 +50,8 @@ macro_rules! each_command {
     }
     "Change the problem" {
         Less "less" "<" "less" parameter InOrder Selected("KEY=VALUE")
-            "decrease the selected value by its second digit: 0.0025, 0.0024" { run: |model| turn(model, Id::Less, None) }
-        More "more" ">" "more" parameter InOrder Selected("KEY=VALUE") "increase the selected value by its second digit"
+            "decrease the selected value by its second digit (0.0025, 0.0024), a rate by a third of a decade" { run: |model| turn(model, Id::Less, None) }
+        More "more" ">" "more" parameter InOrder Selected("KEY=VALUE") "increase the selected value by its second digit, a rate by a third of a decade"
             { run: |model| turn(model, Id::More, None) }
         MuchLess "much-less" "{" "much less" parameter InOrder Selected("KEY=VALUE") "decrease it by its first digit: 0.003, 0.002"
             { run: |model| turn(model, Id::MuchLess, None) }

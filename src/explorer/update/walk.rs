@@ -1,6 +1,7 @@
 //! Steps, runs, jumps and undo: what is requested of the walk, and what becomes of its answers.
 
 use crate::explorer::Axes;
+use crate::explorer::availability::goes_on;
 use crate::explorer::command::{Id, LENGTHS, PACES};
 use crate::explorer::curve::CurveData;
 use crate::explorer::effect::Effect;
@@ -37,8 +38,8 @@ pub(in crate::explorer) fn walk(model: &mut Model, action: Action) -> Vec<Effect
     let moves = action.begins() || matches!(action, Action::Solve { .. });
     let node = model.history.current();
     if !moves {
-        if node.is_some_and(Node::is_apart) {
-            return model.refuse(format!("the bodies are apart: {}", back_or_anew()));
+        if let Err(why) = goes_on(model) {
+            return model.refuse(why);
         }
         let is_stale = |node: &Node| !model.is_on_curve(node) && matches!(node.kind, NodeKind::Stale(_));
         if node.is_some_and(is_stale) {
