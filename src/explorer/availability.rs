@@ -42,7 +42,7 @@ pub(super) fn goes_on(model: &Model) -> Available {
 
 /// Requires a state of a walk that may turn round; along a path, the walk follows the device.
 pub(super) fn turns(model: &Model) -> Available {
-    goes_on(model)?;
+    walker(model)?;
     when(model.curve.as_ref().is_none_or(|curve| curve.along.is_none()), || {
         let undo = Id::Undo.named();
         match model.preset.path.begin {
@@ -65,9 +65,10 @@ pub(super) fn walker_or_no_curve(model: &Model) -> Available {
 
 /// Requires a state in which an edge can run.
 pub(super) fn jump(model: &Model) -> Available {
-    goes_on(model)?;
     when(model.can_jump(), || {
-        format!("the state is stable: the edge stays; {} runs to the next event", Id::NextEvent.named())
+        goes_on(model).err().unwrap_or_else(|| {
+            format!("the state is stable: the edge stays; {} runs to the next event", Id::NextEvent.named())
+        })
     })
 }
 

@@ -2,8 +2,8 @@
 //! completion, scripts, the manual page and the book's key table are derived from it.
 
 use super::availability::{
-    Available, always, branches, curve, goes_on, jump, parameter, pins, redo, turns, undo,
-    walker_or_no_curve, zoomed,
+    Available, always, branches, curve, jump, parameter, pins, redo, turns, undo, walker, walker_or_no_curve,
+    zoomed,
 };
 use super::command::list::each_command;
 use super::command::{Command, Id, MOST_STEPS};

@@ -131,7 +131,7 @@ fn an_approach_alone_says_which_work_of_adhesion_it_shows() {
     assert!(found.notes.iter().any(|note| note.contains("is that of the approach")), "{:?}", found.notes);
 }
 
-/// The fit of the retraction of a loop alone, with γ_a given, where the instrument begins to write `late` rows after the turn.
+/// The fit of the retraction of a loop alone, with `γ_a` given, where the instrument begins to write `late` rows after the turn.
 fn retraction(late: usize) -> Fit {
     let mut given = preset(SPHERE, 1.5, 0.02, "");
     given.set(CLOSING_ADHESION, 0.01.into()).unwrap();

@@ -11,15 +11,15 @@ macro_rules! each_command {
     ($make:ident) => {
         $make! {
     "Walk along the curve" {
-        Step "step" "Space" "step" goes_on Curve Yes "one step along the equilibrium curve, past limit points too"
+        Step "step" "Space" "step" walker Curve Yes "one step along the equilibrium curve, past limit points too"
             { run: |model| walk(model, Action::Steps(1)),
             takes: takes("number of steps", |rest| Ok(Command::Steps(rest.count("a number of steps", MOST_STEPS)?))) }
-        NextEvent "next-event" "n" "next event" goes_on Curve Yes
+        NextEvent "next-event" "n" "next event" walker Curve Yes
             "to the next event of the path; at a limit point or a touch, let it happen" { run: next_event }
         Jump "jump" "x" "jump" jump Curve Yes
             "let edges run at constant control to the next stable state; from a touch, with the new contact"
             { run: |model| walk(model, Action::Jump) }
-        Run "run" "r" "run" goes_on Curve Yes
+        Run "run" "r" "run" walker Curve Yes
             "run at a watchable pace to the next limit point or touch; any key but the pace keys pauses"
             { words: "animate play", run: run_or_stop,
             takes: takes("number of states", |rest| Ok(Command::RunOf(rest.count("a number of states", MOST_STEPS)?))) }

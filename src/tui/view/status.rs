@@ -4,7 +4,7 @@ use super::legend::reading;
 use super::parts::fitted;
 use crate::explorer::model::Level;
 use crate::explorer::table::{is_available, row_of};
-use crate::explorer::{Home, Id, ScreenPanel, View};
+use crate::explorer::{Home, Id, Node, ScreenPanel, View};
 use crate::tui::app::App;
 use crate::tui::overlay::{Dialog, Prompt, Purpose};
 use crossterm::event::KeyCode;
@@ -16,8 +16,13 @@ use ratatui::text::{Line, Span};
 /// selected panel, then the rest.
 pub fn offered(app: &App) -> Vec<(Id, &'static str)> {
     let word = |id: Id| (id, row_of(id).short);
-    let walk = [Id::Step, Id::NextEvent, Id::Jump, Id::Reverse, Id::Undo].map(word);
     let model = &app.model;
+    let is_apart = !model.is_computing() && model.history.current().is_some_and(Node::is_apart);
+    let walk: &[Id] = if is_apart {
+        &[Id::Undo, Id::Restart]
+    } else {
+        &[Id::Step, Id::NextEvent, Id::Jump, Id::Reverse, Id::Undo]
+    };
     let own: &[(Id, &str)] = match (model.panel, model.view) {
         (ScreenPanel::Problem, _) if model.fitted().is_some() => &[
             (Id::Less, "less"),
@@ -67,12 +72,11 @@ pub fn offered(app: &App) -> Vec<(Id, &'static str)> {
     ];
     // In charts of values the walker is not seen: reading them comes before turning it round.
     let reads = matches!(model.view, View::Study | View::Map) && model.panel != ScreenPanel::Charts;
-    let walk = walk
-        .into_iter()
-        .map(|(id, text)| if reads && id == Id::Reverse { word(Id::CrossHair) } else { (id, text) });
+    let walk = walk.iter().map(|id| word(if reads && *id == Id::Reverse { Id::CrossHair } else { *id }));
     // Whoever does not know a key looks for this one, so it stands where a narrow screen has room for it.
     let (first, more) = own.split_at(own.len().min(2));
     let own = first.iter().copied().chain([word(Id::Help)]).chain(more.iter().copied());
+    let rest = rest.into_iter().filter(|id| !(is_apart && *id == Id::Restart));
     walk.chain(own).chain(rest.map(word)).collect()
 }
 
