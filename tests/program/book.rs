@@ -3,7 +3,7 @@
 
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a helper of a test fails the test by panicking")]
 
-use crate::fit::{SOFT, SPEEDS, pulled};
+use crate::fit_rates::{SOFT, SPEEDS, pulled};
 use crate::support::home::{Ended, Home};
 use pulloff_engine::preset::{self, Files, read, read_in};
 use pulloff_engine::sweep::Spec;

@@ -23,6 +23,7 @@ mod explorer_map;
 mod explorer_rings;
 mod explorer_screen;
 mod fit;
+mod fit_rates;
 mod fit_table;
 mod gallery;
 mod hostile_outputs;

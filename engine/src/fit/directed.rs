@@ -169,15 +169,13 @@ fn of_pinned_edge(
 ) -> Option<Reason> {
     /// What the closing edge is taken to gain, over γ: the less, the longer the line on which the first rows may lie.
     const LEAST: f64 = 1e-6;
-    let has_law = options.free.iter().any(|key| key.starts_with("edge."));
+    let is_pulled = preset.edge.rate.is_some() || options.free.iter().any(|key| key.starts_with("edge."));
+    let has_closing = preset.edge.closing_work_of_adhesion.is_some();
     let alone = own.rows.approach.contact == 0;
-    if own.verdict != Verdict::DoesNotDescribe || has_law || !alone {
+    if own.verdict != Verdict::DoesNotDescribe || is_pulled || has_closing || !alone {
         return None;
     }
     let mut pinned = preset.clone();
-    if pinned.edge.closing_work_of_adhesion.is_some() {
-        return None;
-    }
     pinned.set(CLOSING_ADHESION, (LEAST * pinned.material.work_of_adhesion).into()).ok()?;
     let options = options.without_intervals();
     let found = directed(&pinned, points, &options, &ProgressPart::new(progress, [1.0, 1.0])).ok()?;

@@ -35,14 +35,7 @@ pub fn posed(
     options: &Options,
     notes: &mut Vec<String>,
 ) -> Result<FitProblem, FitError> {
-    let mut bare = preset.clone();
-    // The preset's own points say nothing about other values.
-    bare.data = DataSpec::default();
-    // Values far off would be refused because of where the path of the preset starts, which does not matter here.
-    (bare.path.start, bare.path.end_contact_radius, bare.path.turn) = (Start::Force(0.0), None, None);
-    if preset.basis != BasisSpec::Exact {
-        notes.push("the fit is made in the exact basis, whatever basis.kind says".to_owned());
-    }
+    let mut bare = bare(preset, notes);
     let mut data = data(branches);
     let offset = preset.data.instrument(branches).offset;
     let closing = closing(preset, branches, options, notes)?;
@@ -51,26 +44,17 @@ pub fn posed(
     if let Some(start) =
         started(&mut bare, (branches, options, closing), (&mut data, offset), &targets, notes)?
     {
-        let stands = options.free.is_empty() && bare.edge.rate.is_some();
-        if stands && matches!(preset.path.start, Start::ContactRadius(_)) {
-            bare.path.start = preset.path.start;
-        } else {
-            bare.path.start = start;
-            targets.push(Target::Key(START.to_owned()));
-        }
+        let is_own = options.free.is_empty() && bare.edge.rate.is_some();
+        let own = Some(preset.path.start).filter(|start| is_own && matches!(start, Start::ContactRadius(_)));
+        bare.path.start = own.unwrap_or(start);
+        targets.extend(own.is_none().then(|| Target::Key(START.to_owned())));
     }
     let loops = has_waves && data.iter().any(|datum| datum.segment == Segment::Approach);
     let known = known(preset, branches, (options, closing))?;
     let is_known = known.iter().any(|known| known.target == Target::Baseline);
     let instrument = instrument(preset, branches, options, (&mut targets, is_known), notes);
-    targets.extend(
-        known
-            .iter()
-            .map(|known| &known.target)
-            .filter(|target| !targets.contains(target))
-            .cloned()
-            .collect::<Vec<_>>(),
-    );
+    let also = known.iter().map(|known| &known.target).filter(|target| !targets.contains(target));
+    targets.extend(also.cloned().collect::<Vec<_>>());
     let parameters = targets.into_iter().map(|target| parameter(&bare, branches, &instrument, target));
     let parameters: Vec<FreeParameter> = parameters.collect();
     if !is_pulled(&bare) {
@@ -103,6 +87,19 @@ pub fn posed(
         loops,
         counts: None,
     })
+}
+
+/// The preset without what does not matter to other values than its own.
+fn bare(preset: &Preset, notes: &mut Vec<String>) -> Preset {
+    let mut bare = preset.clone();
+    // Its own points say nothing about other values.
+    bare.data = DataSpec::default();
+    // Values far off would be refused because of where its path starts.
+    (bare.path.start, bare.path.end_contact_radius, bare.path.turn) = (Start::Force(0.0), None, None);
+    if preset.basis != BasisSpec::Exact {
+        notes.push("the fit is made in the exact basis, whatever basis.kind says".to_owned());
+    }
+    bare
 }
 
 /// Whether the curve of `preset` is a pull at a rate, whichever keys are free.

@@ -166,10 +166,8 @@ impl Autosave {
             writer.written = Some((resumed, before));
         }
         let known = writer.written.as_ref().is_some_and(|(written, how)| {
-            // A session marked as running, but held by no program, was cut off.
-            let is_said = *how == ended
-                || (*how == Ended::Running && ended == Ended::Dropped)
-                || (ended == Ended::Running && writer.before == Some(*how));
+            // A connection that drops is written even where nothing else is new: the session used last is resumed first.
+            let is_said = *how == ended || (ended == Ended::Running && writer.before == Some(*how));
             is_said && written.is_like(snapshot)
         });
         if known || (writer.claim.is_none() && !snapshot.is_worth_keeping()) {

@@ -240,6 +240,27 @@ fn the_thread_writes_what_is_left_with_it_and_a_killed_program_is_seen() {
 }
 
 #[test]
+fn the_session_whose_connection_drops_last_is_the_newest() {
+    let mut bench = Bench::new();
+    let autosave = Autosave::new(bench.archive());
+    autosave.start(|text| panic!("{text:?}")).unwrap();
+    autosave.offer(bench.does(Id::Step));
+    let begun = Instant::now();
+    while bench.names().is_empty() {
+        assert!(begun.elapsed() < PATIENCE, "nothing was written");
+        std::thread::sleep(Duration::from_millis(5));
+    }
+    let other = Autosave::new(bench.archive());
+    other.offer(bench.does(Id::Step));
+    other.finish(Ended::Dropped, PATIENCE).unwrap();
+    assert_eq!(bench.names()[0], "fig-3-jkr-2");
+    // Nothing has changed in it since it was written.
+    autosave.finish(Ended::Dropped, PATIENCE).unwrap();
+    assert_eq!(bench.names()[0], "fig-3-jkr-1");
+    assert_eq!(bench.archive().cut_off().unwrap().unwrap().claim.name(), "fig-3-jkr-1");
+}
+
+#[test]
 fn another_preset_is_another_session_and_the_one_before_is_whole() {
     let mut bench = Bench::new();
     let autosave = Autosave::new(bench.archive());

@@ -123,8 +123,8 @@ fn part(part: &Inadmissible, units: &UnitSystem, ascii: bool) -> String {
     format!("! inadmissible {}{wave}", part.report.text(units, ascii))
 }
 
-/// The meaning of the marks, and whether all of it belongs to earlier values; and beside it the sums. These have more to
-/// say where there is no room for both.
+/// The meaning of the marks, and whether all of it belongs to earlier values; and beside it the sums, which come first
+/// where there is no room for both.
 fn title(model: &Model, log: &Log, theme: Theme, width: usize) -> (String, String) {
     let is_old = model.preset.path.begin == Begin::Apart
         && model.cycle().is_some_and(|cycle| !cycle.is_of_preset(&model.preset));
