@@ -186,7 +186,13 @@ fn beside(theme: Theme, model: &Model, pin: &Pin, compared: &Compared<'_>) -> Ve
         ])
     };
     let row = |name: &str, values: [Option<f64>; 2]| {
-        let [now, pin] = values.map(|x| x.map_or_else(|| "none".to_owned(), cell));
+        let [mut now, pin] = values.map(|x| x.map_or_else(|| "none".to_owned(), cell));
+        // A blank stays between a long name and its value.
+        if let Some(x) =
+            values[0].filter(|_| name.chars().count() + 1 + now.chars().count() >= NAME + now_width)
+        {
+            now = format!("{x:.1e}");
+        }
         let change = match values {
             [Some(now), Some(was)] if was != 0.0 => change(now, was),
             _ => String::new(),
