@@ -132,7 +132,7 @@ fn through(figure: &Figure, at: (f64, f64)) -> Option<Vec<(f64, f64)>> {
 /// The figure of `report`, with the preset at its position.
 pub fn figure(report: &MapReport, subject: &Subject<'_>) -> Figure {
     let preset = subject.preset;
-    let places = |axis| Places::of(axis, preset, report.control.unwrap_or(preset.path.control));
+    let places = |axis| Places::of(axis, preset, report.control);
     let (x, y) = (places(&report.x), places(&report.y));
     let mut figure = laid(report, preset, &x, &y);
     let is_map = report.counts.is_some();
@@ -159,7 +159,7 @@ pub fn taken(report: &MapReport, preset: &Preset, (x, y): (f64, f64)) -> Vec<(Ke
         if axis.key != COMPLIANCE && preset.row(&axis.key).is_none() {
             return None;
         }
-        let value = Places::of(axis, preset, report.control.unwrap_or(preset.path.control)).value(place);
+        let value = Places::of(axis, preset, report.control).value(place);
         // Only a few digits of the number are meaningful.
         let text = value.map(|value| format!("{:e}", rounded(value)));
         if axis.key != COMPLIANCE {
@@ -179,7 +179,7 @@ pub fn taken(report: &MapReport, preset: &Preset, (x, y): (f64, f64)) -> Vec<(Ke
 pub fn count(report: &MapReport, preset: &Preset, (x, y): (f64, f64)) -> Option<usize> {
     let counts = report.counts.as_ref()?;
     let nearest = |axis: &AxisReport, values: &[Option<f64>], place: f64| {
-        let places = Places::of(axis, preset, report.control.unwrap_or(preset.path.control));
+        let places = Places::of(axis, preset, report.control);
         let run = places.axis.run;
         let away = |value: &Option<f64>| (run.place(places.at(*value)) - run.place(place)).abs();
         values.iter().map(away).enumerate().min_by(|a, b| a.1.total_cmp(&b.1)).map(|(at, _)| at)

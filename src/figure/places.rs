@@ -20,8 +20,9 @@ pub struct Places {
 }
 
 impl Places {
-    /// The positions on an axis of a map of `preset`.
-    pub fn of(axis: &AxisReport, preset: &Preset, control: Control) -> Self {
+    /// The positions on an axis of a map of `preset` under `control`, or that of the preset.
+    pub fn of(axis: &AxisReport, preset: &Preset, control: Option<Control>) -> Self {
+        let control = control.unwrap_or(preset.path.control);
         let quantity = match axis.key.as_str() {
             "control" if control == Control::Force => Quantity::Force,
             "force" => Quantity::Force,

@@ -10,7 +10,7 @@ use pulloff_engine::text::headline;
 
 /// The figure of `report`, with `preset` at its position.
 pub fn figure(report: &MapReport, preset: &Preset) -> Figure {
-    let places = |axis: &AxisReport| Places::of(axis, preset, report.control.unwrap_or(preset.path.control));
+    let places = |axis: &AxisReport| Places::of(axis, preset, report.control);
     let (x, y) = (places(&report.x), places(&report.y));
     let figure = laid(report, preset, &x, &y);
     let titled = |axis: Axis, of: &AxisReport| {

@@ -107,6 +107,12 @@ fn three_speeds_are_fitted_together() {
     let in_contact: Vec<f64> =
         beside.iter().filter(|found| !found.datum.free).map(|found| found.residual.abs()).collect();
     assert!(in_contact.len() > 80 && in_contact.iter().all(|off| *off < 5.0), "{in_contact:?}");
+    // A start that the fitted preset cannot have is told, and the rest is written.
+    let ends = ["--set", "path.start_contact_radius=700um", "--set", "path.end_contact_radius=650um"];
+    let free = ["--free", "gamma,v0", "-o", "ends.toml"];
+    let ended = home.run(&[&["fit", "fast.csv", "soft.toml"][..], &ends, &free].concat());
+    assert!(ended.status == 0 && home.path("ends.toml").exists(), "{}", ended.err);
+    assert!(ended.out.contains("path.start_contact_radius could not be set in the preset"), "{}", ended.out);
     // A file with another work of adhesion does not follow the law.
     let ended = fit(&["slow.csv", "other.csv"], &[]);
     assert_eq!(ended.status, 4, "{}", ended.err);

@@ -39,10 +39,6 @@ const SMALL: f64 = 0.2;
 /// second.
 const MOST_WORK: usize = 1000;
 
-/// With more panels to look at than this, a few places come first: bodies that overlap along many waves do so there.
-const LONG: usize = 64;
-const PROBES: usize = 16;
-
 /// Crests examined from the first that overlaps onward.
 const CRESTS: usize = 8;
 
@@ -404,6 +400,23 @@ pub fn below(panels: &Panels, s: f64, delta: f64, end: f64) -> Vec<(usize, [f64;
     found
 }
 
+/// A place `[r, gap]` where the gap around the disc is below `overlap`, where it may be negative on very many panels:
+/// bodies that overlap along hundreds of waves do so at one of a few places too. `None` elsewhere, and where none of these
+/// is one: then only [`least_gap`] tells.
+pub fn overlap_on_many(panels: &Panels, s: f64, delta: f64, end: f64, overlap: f64) -> Option<[f64; 2]> {
+    /// More panels than this are many, of which about so many are looked at.
+    const MANY: usize = 64;
+    const LOOKED_AT: usize = 16;
+    let pieces = below(panels, s, delta, end);
+    let in_middle = |(index, [lo, hi]): &(usize, [f64; 2])| {
+        let radius = panels.radius(Place { panel: *index, x: 0.5 * (lo + hi) });
+        [radius, gap_from(panels, s, delta, radius)]
+    };
+    let step = (pieces.len() / LOOKED_AT).max(1);
+    let looked = pieces.iter().rev().step_by(step).filter(|_| pieces.len() > MANY).map(in_middle);
+    looked.min_by(|a, b| a[1].total_cmp(&b[1])).filter(|[_, gap]| *gap < overlap)
+}
+
 /// What a search for the smallest gap has found.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct LeastGap {
@@ -415,9 +428,8 @@ pub struct LeastGap {
 
 /// The smallest gap around the disc among the radii at which it can first become negative.
 ///
-/// Once the gap is below `overlap`, only a few more crests are examined; otherwise no more than about a hundred. Where
-/// the bodies overlap along very many panels, it is the smallest at a few places only. The panels must
-/// reach to `end`. Where `progress` says stop, the search is given up.
+/// Once the gap is below `overlap`, only a few more crests are examined; otherwise no more than about a hundred. The
+/// panels must reach to `end`. Where `progress` says stop, the search is given up.
 pub fn least_gap(
     panels: &Panels,
     s: f64,
@@ -431,16 +443,6 @@ pub fn least_gap(
     let pieces = below(panels, s, delta, end);
     let on = |piece: &(usize, [f64; 2])| least_on(panels, s, delta, piece.0, piece.1, HALVINGS);
     let smallest = |a: &[f64; 2], b: &[f64; 2]| a[1].total_cmp(&b[1]);
-    if pieces.len() > LONG {
-        let in_middle = |(index, [lo, hi]): &(usize, [f64; 2])| {
-            let radius = panels.radius(Place { panel: *index, x: 0.5 * (lo + hi) });
-            [radius, gap_from(panels, s, delta, radius)]
-        };
-        let probed = pieces.iter().step_by(pieces.len() / PROBES).map(in_middle).min_by(smallest);
-        if probed.is_some_and(|[_, gap]| gap < overlap) {
-            return LeastGap { at: probed, given_up: None };
-        }
-    }
     let mut least: Option<[f64; 2]> = None;
     let mut left = CRESTS;
     for run in pieces.chunk_by(|(a, before), (b, after)| b - a <= 1 && before[1] >= 1.0 && after[0] <= -1.0) {

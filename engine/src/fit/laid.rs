@@ -47,6 +47,19 @@ pub(super) fn laid(
             ));
         }
     }
+    let mut set = |key: &str, value: Value| {
+        if let Err(invalid) = laid.set(key, value) {
+            notes.push(format!("{key} could not be set in the preset: {invalid}"));
+        }
+    };
+    if is_pulled(found) {
+        // The fitted preset makes the pull that was fitted, also where its rate is that of the times.
+        for key in [edge::RATE, START] {
+            if let Some(value) = found.get(key) {
+                set(key, value);
+            }
+        }
+    }
     for parameter in all().filter(|of| !is_closing(of)).chain(all().filter(is_closing)) {
         let (key, value) = match &parameter.target {
             Target::Key(key) => (key.as_str(), found.get(key)),
@@ -60,13 +73,9 @@ pub(super) fn laid(
             Target::Baseline => (BASELINE, Some(instrument.baseline.into())),
             Target::Tilt => (TILT, Some(instrument.tilt.into())),
         };
-        if let Some(Err(invalid)) = value.map(|value| laid.set(key, value)) {
-            notes.push(format!("{key} could not be set in the preset: {invalid}"));
+        if let Some(value) = value {
+            set(key, value);
         }
-    }
-    if is_pulled(found) {
-        // The fitted preset makes the pull that was fitted, also where its rate is that of the times.
-        (laid.edge.rate, laid.path.start) = (found.edge.rate, found.path.start);
     }
     let is_within =
         matches!(laid.path.start, Start::ContactRadius(start) if widest > start * (1.0 + REACHED));

@@ -130,10 +130,20 @@ fn started(
         }
         return begun(bare, branches, &attached, offset).map(Some);
     }
-    bare.edge.rate = None;
-    if options.is_rate_said {
-        notes.push("--rate plays no part, as the edge has no law of its speed".to_owned());
-    }
+    let is_unset = bare.edge.rate.take().is_none();
+    let has_law = bare.edge.exponent.is_some() && bare.edge.reference_speed.is_some();
+    let plays_no_part = match (options.is_rate_said, has_law, attached.is_empty()) {
+        (true, false, _) => Some("--rate plays no part, as the edge has no law of its speed"),
+        (true, true, true) => Some("--rate plays no part, as there is no retraction"),
+        (true, true, false) => {
+            Some("--rate plays no part with path.steps, or with adhesion that has a range")
+        }
+        (false, true, false) if is_unset && !options.free.is_empty() => {
+            Some("the law of the edge plays no part, as path.rate is not set: equilibria are fitted")
+        }
+        _ => None,
+    };
+    notes.extend(plays_no_part.map(str::to_owned));
     if closing == Closing::Same {
         return Ok(None);
     }
@@ -253,7 +263,10 @@ fn closing(
     }
     let refused = |why: &str| Err(FitError::Key { key: CLOSING_ADHESION.to_owned(), why: why.to_owned() });
     if has_law {
-        return refused("plays no part with keys of edge, which are fitted to the retraction alone");
+        return refused(
+            "plays no part in a pull at a rate, which is fitted to the retraction alone: without path.rate and free keys of edge, \
+             equilibria are fitted",
+        );
     }
     if !is_loop {
         return refused("needs both an approach and a retraction");

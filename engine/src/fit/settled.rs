@@ -134,7 +134,7 @@ pub(super) fn beyond_snaps(
     robust: bool,
     progress: &dyn Progress,
 ) -> SolvedFit {
-    /// How many errors, all else held.
+    /// By how many errors.
     const AWAY: [f64; 2] = [-8.0, 8.0];
     let huber = HUBER * solved.scale;
     let cost = |u: &[f64]| problem.cost_at(u, huber);

@@ -148,7 +148,11 @@ impl Judge {
         let panels = if end > s { self.table.up_to_while(end, 0, progress).ok() } else { None };
         let searched = panels.map(|panels| {
             overlap = overlap.min(-error_beside_axis(&panels, s));
-            outside::least_gap(&panels, s, delta, end.min(panels.reach()), overlap, progress)
+            let end = end.min(panels.reach());
+            match outside::overlap_on_many(&panels, s, delta, end, overlap) {
+                None => outside::least_gap(&panels, s, delta, end, overlap, progress),
+                found => outside::LeastGap { at: found, given_up: None },
+            }
         });
         let known_to = searched.and_then(|searched| searched.given_up).or(known_to);
         let least = searched.and_then(|searched| searched.at);

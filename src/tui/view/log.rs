@@ -379,8 +379,9 @@ fn cells(
         Some(lost) => loss(units.shown(Quantity::Energy, lost).number),
         None => "no bound".to_owned(),
     };
-    let times =
-        if entry.times > 1 { format!(" {}{}", theme.glyph("×", "x"), entry.times) } else { String::new() };
+    // Where the walker stands before an event, no mark says that it has happened already.
+    let is_told = entry.times > u32::from(entry.mark == EventMark::Done);
+    let times = if is_told { format!(" {}{}", theme.glyph("×", "x"), entry.times) } else { String::new() };
     let fault = if event.admissible == Some(false) { " !" } else { "" };
     // What is held does not change.
     let (delta_after, load_after) = match control {
