@@ -88,6 +88,12 @@ fn sum<'a>(events: impl Iterator<Item = (&'a LogEntry, u32)>) -> (f64, bool) {
     })
 }
 
+/// Whether an event begins in this state.
+fn begins_at(event: &EventReport, node: &Node) -> bool {
+    let stands = node.state.in_units(node.setting.units()).contact_radius;
+    radius(event.before.as_ref()).is_some_and(|begins| is_near(begins, stands))
+}
+
 /// How an event of the path has happened.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 struct Happened {
@@ -225,34 +231,15 @@ impl Model {
         let first = walk.iter().rposition(|(_, node)| node.begins).unwrap_or(0);
         let walk = &walk[first..];
         let of_curve: Vec<&(usize, &Node)> = walk.iter().filter(|(_, node)| self.is_on_curve(node)).collect();
-        let mut done = vec![Happened::default(); events.len()];
-        let is_own = |node: &Node| self.control().is_none_or(|control| node.control == control);
         // How many events lie behind the last state that no event of the path led to.
-        let mut passed = 0;
-        if let Some((_, node)) = of_curve.first() {
-            let (behind, is_on_path) = self.passed_before(events, node);
-            let happened = &mut done[..behind];
-            match node.kind {
-                // Bodies in contact have come together at some point.
-                NodeKind::Start => happened.fill(Happened::UNSEEN),
-                // Such a state is reached through the events before it.
-                NodeKind::Moved | NodeKind::Limit | NodeKind::Touch(_) if is_on_path && is_own(node) => {
-                    happened.fill(Happened::UNSEEN);
-                }
-                // Sent elsewhere, or solved again in place for other values: what lies behind did not happen.
-                NodeKind::Moved | NodeKind::Solved | NodeKind::Limit if !self.is_start(node) => {
-                    passed = behind;
-                }
-                _ => {}
-            }
-        }
+        let (mut done, mut passed) = self.done_before(events, of_curve.first().map(|(_, node)| *node));
         // A jump that is not an event of the path comes after the last event that was done.
         let mut strays: Vec<(usize, LogEntry)> = Vec::new();
         let mut last = done.iter().rposition(|done| done.is_done()).map_or(passed, |at| at + 1);
         for (number, event) in self.walked_events() {
             let Some((_, node)) = of_curve.iter().find(|(of_curve, _)| *of_curve == number) else { continue };
             // What happened under another control is not of this path, and no loss of it.
-            if !is_own(node) {
+            if !self.is_own(node) {
                 passed = self.passed_by(events, &event);
                 last = last.max(passed);
                 continue;
@@ -293,6 +280,32 @@ impl Model {
         Log { entries }
     }
 
+    /// Whether a state was reached under the control of the path.
+    fn is_own(&self, node: &Node) -> bool {
+        self.control().is_none_or(|control| node.control == control)
+    }
+
+    /// What of the path has happened before a walk along the curve that begins at `first`, and how many events lie behind
+    /// that state if none of them led to it.
+    fn done_before(&self, events: &[EventReport], first: Option<&Node>) -> (Vec<Happened>, usize) {
+        let mut done = vec![Happened::default(); events.len()];
+        let Some(node) = first else { return (done, 0) };
+        let (behind, is_on_path) = self.passed_before(events, node);
+        let mut passed = 0;
+        match node.kind {
+            // Bodies in contact have come together at some point.
+            NodeKind::Start => done[..behind].fill(Happened::UNSEEN),
+            // Such a state is reached through the events before it.
+            NodeKind::Moved | NodeKind::Limit | NodeKind::Touch(_) if is_on_path && self.is_own(node) => {
+                done[..behind].fill(Happened::UNSEEN);
+            }
+            // Sent elsewhere, or solved again in place for other values: what lies behind did not happen.
+            NodeKind::Moved | NodeKind::Solved | NodeKind::Limit if !self.is_start(node) => passed = behind,
+            _ => {}
+        }
+        (done, passed)
+    }
+
     /// How many events lie behind the landing of a jump that is not one of them. A path that only unloads has none that
     /// an outward jump goes back to.
     fn passed_by(&self, events: &[EventReport], jump: &EventReport) -> usize {
@@ -307,24 +320,17 @@ impl Model {
         if node.at(self.control()?) == At::Nothing && node.kind != NodeKind::Moved {
             return None;
         }
-        let stands = node.state.in_units(node.setting.units()).contact_radius;
         let direction = if self.inward { "unloading" } else { "loading" };
         let has_jumped = matches!(node.kind, NodeKind::Jump(_));
         events.iter().zip(done).position(|(event, done)| {
-            let begins = radius(event.before.as_ref());
-            (!done.is_done() || !has_jumped)
-                && event.direction == direction
-                && begins.is_some_and(|begins| is_near(begins, stands))
+            (!done.is_done() || !has_jumped) && event.direction == direction && begins_at(event, node)
         })
     }
 
     /// The number of the event of the path that begins in the state of the walker, whichever way the walk goes.
     pub fn event_beginning_here(&self) -> Option<usize> {
         let node = self.walker().filter(|node| !node.is_apart())?;
-        let stands = node.state.in_units(node.setting.units()).contact_radius;
-        let begins =
-            |event: &EventReport| radius(event.before.as_ref()).is_some_and(|at| is_near(at, stands));
-        self.path_events().iter().find(|event| begins(event)).map(|event| event.number)
+        self.path_events().iter().find(|event| begins_at(event, node)).map(|event| event.number)
     }
 
     /// Whether a walk, whose states these are, has come as far as the turn of the path and goes back.

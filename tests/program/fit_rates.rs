@@ -134,6 +134,8 @@ fn three_speeds_are_fitted_together() {
     assert!(status == 0 && said.contains("verdict: the model describes"), "{said}");
     let (status, said) = held("slow.csv", &["--rate", "7um/s"]);
     assert!(status == 2 && said.contains("slow.csv: the rate is given as 7 um/s"), "{said}");
+    let (_, said) = held("slow.csv", &[]);
+    assert!(said.contains("the law of the edge plays no part, as path.rate is not set"), "{said}");
     let (_, said) = held("slow.csv", &["--rate", "7um/s", "--set", "edge.exponent=none"]);
     assert!(said.contains("--rate plays no part, as the edge has no law"), "{said}");
     let ended = fit(&["slow.csv", "fast.csv"], &["--residuals", "r.csv"]);

@@ -46,6 +46,17 @@ fn the_rows_are_points_of_lines_and_the_smallest_amplitude_is_said() {
 }
 
 #[test]
+fn a_map_over_the_device_has_no_control_and_no_onset_of_its_own() {
+    let home = tempfile::tempdir().unwrap();
+    for (axis, control) in [("k=0.1..10", "null"), ("gamma=0.002..0.006", "\"displacement\"")] {
+        let asked = ["map", "wavy-sphere", "--x-key", axis, "--y", "force", "--format", "json"];
+        let json: serde_json::Value = serde_json::from_str(&text(home.path(), &asked)).unwrap();
+        assert_eq!(json["control"].to_string(), control);
+        assert_eq!(json["onset"].is_null(), control == "null", "{}", json["onset"]);
+    }
+}
+
+#[test]
 fn the_counts_are_those_of_a_sweep_and_it_is_drawn_over_one() {
     let home = tempfile::tempdir().unwrap();
     let folder = home.path();

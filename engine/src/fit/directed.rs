@@ -7,9 +7,9 @@ use super::outcome::Fit;
 use super::problem::START;
 use super::run::fit_branches;
 use super::verdict::{Reason, Verdict};
-use crate::measured::asked::{ValueRange, signs_text};
+use crate::measured::asked::signs_text;
 use crate::measured::points::Turned;
-use crate::measured::{Abscissa, Asked, Branches, Points};
+use crate::measured::{Asked, Branches, Points};
 use crate::preset::data::COLUMNS;
 use crate::preset::edge::CLOSING_ADHESION;
 use crate::preset::{OtherReading, Preset};
@@ -115,7 +115,7 @@ pub fn fit(
     progress: &dyn Progress,
 ) -> Result<Fit, FitError> {
     let mut found = directed(preset, points, options, progress)?;
-    found.warnings.extend(of_idle_ranges(preset, points, &options.asked));
+    found.warnings.extend(options.asked.idle_ranges(points, &preset.units));
     let Some(at) = found.reasons.iter().position(|reason| reason.kind == BRANCHES) else {
         found.reasons.splice(0..0, of_pinned_edge(preset, points, (options, &found), progress));
         return Ok(found);
@@ -134,30 +134,6 @@ pub fn fit(
         found.reasons.insert(if is_described { 0 } else { at }, reason);
     }
     Ok(found)
-}
-
-/// Ranges of x and P that leave no row out, as one does whose ends were meant in another unit.
-fn of_idle_ranges(preset: &Preset, points: &Points, asked: &Asked) -> Vec<String> {
-    let of = |(name, range, values, quantity): (&str, Option<ValueRange>, &[f64], Quantity)| {
-        let range = range?;
-        let [least, most] =
-            values.iter().fold([f64::INFINITY, f64::NEG_INFINITY], |[lo, hi], x| [lo.min(*x), hi.max(*x)]);
-        let text = |x: f64| said(&preset.units, quantity, x);
-        let end = |x: f64| if x.is_finite() { text(x) } else { "no end".to_owned() };
-        (range.holds(least) && range.holds(most)).then(|| {
-            format!(
-                "the range of {name} from {} to {} leaves no row out: the rows have {} to {}; a number without a unit is in \
-                 base units",
-                end(range.lo), end(range.hi), text(least), text(most)
-            )
-        })
-    };
-    let x = if points.abscissa == Abscissa::Radius { "the contact radius" } else { "x" };
-    let ranges = [
-        (x, asked.x, points.x.as_slice(), Quantity::Length),
-        ("the force", asked.force, &points.force, Quantity::Force),
-    ];
-    ranges.into_iter().filter_map(of).collect()
 }
 
 /// That a retraction alone, which the model does not describe, begins within a dead band, if it is described then.

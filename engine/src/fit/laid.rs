@@ -53,8 +53,9 @@ pub(super) fn laid(
         }
     };
     if is_pulled(found) {
-        // The fitted preset makes the pull that was fitted, also where its rate is that of the times.
-        for key in [edge::RATE, START] {
+        // The fitted preset makes the pull that was fitted, also where its rate is that of the times, or its start is held.
+        let is_held = all().all(|parameter| parameter.key() != START);
+        for key in [edge::RATE].into_iter().chain(is_held.then_some(START)) {
             if let Some(value) = found.get(key) {
                 set(key, value);
             }

@@ -105,8 +105,7 @@ fn bare(preset: &Preset, notes: &mut Vec<String>) -> Preset {
 /// Whether the curve of `preset` is a pull at a rate, whichever keys are free.
 fn has_rate(preset: &Preset) -> bool {
     let edge = &preset.edge;
-    let has_law = edge.exponent.is_some() && edge.reference_speed.is_some();
-    has_law && edge.rate.is_some() && edge.steps.trim().is_empty() && preset.cohesion().is_none()
+    edge.has_law() && edge.rate.is_some() && edge.steps.trim().is_empty() && preset.cohesion().is_none()
 }
 
 /// Where the path of a fit starts that follows a pull or has works of adhesion of its own on either branch; `None` for
@@ -131,8 +130,7 @@ fn started(
         return begun(bare, branches, &attached, offset).map(Some);
     }
     let is_unset = bare.edge.rate.take().is_none();
-    let has_law = bare.edge.exponent.is_some() && bare.edge.reference_speed.is_some();
-    let plays_no_part = match (options.is_rate_said, has_law, attached.is_empty()) {
+    let plays_no_part = match (options.is_rate_said, bare.edge.has_law(), attached.is_empty()) {
         (true, false, _) => Some("--rate plays no part, as the edge has no law of its speed"),
         (true, true, true) => Some("--rate plays no part, as there is no retraction"),
         (true, true, false) => {
@@ -242,7 +240,8 @@ fn closing(
     notes: &mut Vec<String>,
 ) -> Result<Closing, FitError> {
     let has = |segment| branches.list.iter().any(|branch| branch.segment == segment);
-    let is_loop = has(Segment::Approach) && has(Segment::Retraction);
+    let retracts = has(Segment::Retraction);
+    let is_loop = has(Segment::Approach) && retracts;
     let named = options.free.iter().map(|name| target(preset, branches.abscissa, name));
     let mut targets = named.collect::<Result<Vec<_>, _>>()?;
     if !options.free.is_empty() {
@@ -252,7 +251,6 @@ fn closing(
     let has_law = has_rate(preset) || targets.iter().any(|target| target.key().starts_with("edge."));
     if !targets.contains(&Target::Key(CLOSING_ADHESION.to_owned())) {
         let given = preset.edge.closing_work_of_adhesion;
-        let retracts = has(Segment::Retraction);
         if given.is_some() && !retracts {
             notes.push(format!(
                 "{CLOSING_ADHESION} plays no part, as there is no retraction: the work of adhesion is that of the approach"

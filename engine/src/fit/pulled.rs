@@ -57,9 +57,9 @@ pub(super) struct Trail {
 
 /// Whether `preset` is fitted to a pull: its edge has a law, its device a rate, and the start is a contact radius.
 pub(super) fn is_pulled(preset: &Preset) -> bool {
-    let edge = &preset.edge;
-    let has_law = edge.rate.is_some() && edge.exponent.is_some() && edge.reference_speed.is_some();
-    has_law && matches!(preset.path.start, Start::ContactRadius(_))
+    preset.edge.rate.is_some()
+        && preset.edge.has_law()
+        && matches!(preset.path.start, Start::ContactRadius(_))
 }
 
 impl Trail {

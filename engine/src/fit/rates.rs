@@ -39,7 +39,7 @@ pub(super) fn set_rate(
     notes: &mut Vec<String>,
 ) -> Result<(), FitError> {
     let refused = |why| FitError::NoRate(key.to_owned(), why);
-    if bare.edge.exponent.is_none() || bare.edge.reference_speed.is_none() {
+    if !bare.edge.has_law() {
         return Err(refused("and first guesses of edge.exponent and edge.reference_speed"));
     }
     let retraction = branches.list.iter().filter(|branch| branch.segment == Segment::Retraction);

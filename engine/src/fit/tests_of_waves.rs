@@ -207,6 +207,20 @@ fn an_edge_is_pinned_on_waves_between_two_works_of_adhesion() {
 }
 
 #[test]
+fn a_row_that_changes_its_side_of_a_snap_keeps_no_value_off() {
+    let (mut points, _) = banded([0.001, 0.004], 0.05, 300);
+    let mut noise = Normal::new(7);
+    points.force.iter_mut().for_each(|force| *force += 3e-5 * noise.next());
+    let free = [E, W, CLOSING_ADHESION].map(str::to_owned).to_vec();
+    let options = Options { free, ..Options::default() };
+    let found = fit(&preset(WAVES, 1.2, 0.0013, ""), &points, &options, &Unwatched).unwrap();
+    for (fitted, truth) in found.parameters.iter().zip([1.0, 0.004, 0.001]) {
+        let error = fitted.standard_error.unwrap();
+        assert!((fitted.value - truth).abs() < 3.0 * error, "{fitted:?}");
+    }
+}
+
+#[test]
 fn an_error_that_a_snap_makes_too_small_is_told() {
     let (mut points, _) = banded([0.001, 0.004], 0.07, 300);
     let mut noise = Normal::new(0);

@@ -1,9 +1,10 @@
 //! What the user specifies about the rows: which are used, which are apart, and the direction of the columns.
 
-use super::points::Turned;
+use super::points::{Abscissa, Points, Turned};
 use super::role::Segment;
 use crate::text::quote;
-use crate::units::range_ends;
+use crate::units::number::said;
+use crate::units::{Quantity, UnitSystem, range_ends};
 use thiserror::Error;
 
 /// Limits of values, as the file has them.
@@ -93,6 +94,31 @@ impl ValueRange {
         };
         let span = Self { lo: end(&lo, f64::NEG_INFINITY)?, hi: end(hi, f64::INFINITY)? };
         if span.lo < span.hi { Ok(span) } else { Err(AskedError::Empty(quote(text))) }
+    }
+}
+
+impl Asked {
+    /// Ranges that leave none of `points` out, in words: the ends of such a range may be meant in another unit.
+    pub fn idle_ranges(&self, points: &Points, units: &UnitSystem) -> Vec<String> {
+        let of = |(name, range, values, quantity): (&str, Option<ValueRange>, &[f64], Quantity)| {
+            let range = range.filter(|range| values.iter().all(|value| range.holds(*value)))?;
+            let text = |value: f64| said(units, quantity, value);
+            let end = |value: f64| if value.is_finite() { text(value) } else { "no end".to_owned() };
+            let [least, most] = [f64::min, f64::max].map(|of| values.iter().copied().reduce(of));
+            Some(format!(
+                "the range of {name} from {} to {} leaves no row out: the rows have {} to {}; a number without a unit is in base units",
+                end(range.lo),
+                end(range.hi),
+                text(least?),
+                text(most?)
+            ))
+        };
+        let x = if points.abscissa == Abscissa::Radius { "the contact radius" } else { "x" };
+        let ranges = [
+            (x, self.x, &*points.x, Quantity::Length),
+            ("the force", self.force, &points.force, Quantity::Force),
+        ];
+        ranges.into_iter().filter_map(of).collect()
     }
 }
 

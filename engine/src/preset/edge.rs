@@ -31,6 +31,11 @@ macro_rules! edge {
                 Self { $($field: number($key),)+ steps }
             }
 
+            /// Whether the energy that an opening edge takes up depends on its speed.
+            pub fn has_law(&self) -> bool {
+                self.exponent.is_some() && self.reference_speed.is_some()
+            }
+
             /// The value of a key.
             pub(super) fn get(&self, key: &str) -> Option<Value> {
                 match key {

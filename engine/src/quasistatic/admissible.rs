@@ -390,6 +390,24 @@ mod tests {
     }
 
     #[test]
+    fn bodies_that_overlap_along_many_waves_are_found_at_a_few_places() {
+        const ROUNDING: f64 = -1e-12;
+        let (problem, s) = (wavy(0.01, 0.002, 1e-4).reduced(), 0.02);
+        let (judge, basis) = exact(&problem);
+        let rests = basis.equilibrium(&problem, s).unwrap().approach;
+        for (delta, overlaps) in [(rests, false), (rests + 0.1, true)] {
+            let (end, _) = judge.search_end(s, delta);
+            let panels = judge.table.up_to_while(end, 0, &Unwatched).unwrap();
+            let end = end.min(panels.reach());
+            let pieces = outside::below(&panels, s, delta, end).len();
+            let few = outside::overlap_on_many(&panels, s, delta, end, ROUNDING);
+            let [_, least] = outside::least_gap(&panels, s, delta, end, ROUNDING, &Unwatched).at.unwrap();
+            assert!(pieces > 300 && (least < 0.0) == overlaps, "{pieces} {least}");
+            assert_eq!(few.map(|[_, gap]| gap < 0.0), overlaps.then_some(true), "{few:?}");
+        }
+    }
+
+    #[test]
     fn the_exact_gap_agrees() {
         for (problem, step) in [(wavy(0.0025, 0.05, 1e-4), 7), (wavy(0.01, 0.1, 2e-3), 5)] {
             let reduced = problem.reduced();

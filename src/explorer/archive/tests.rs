@@ -41,6 +41,19 @@ impl Bench {
         listed.into_iter().map(|entry| entry.name).collect()
     }
 
+    /// An autosave whose thread has written one step.
+    fn written(&mut self) -> Autosave {
+        let autosave = Autosave::new(self.archive());
+        autosave.start(|text| panic!("{text:?}")).unwrap();
+        autosave.offer(self.does(Id::Step));
+        let begun = Instant::now();
+        while self.names().is_empty() {
+            assert!(begun.elapsed() < PATIENCE, "nothing was written");
+            std::thread::sleep(Duration::from_millis(5));
+        }
+        autosave
+    }
+
     /// All files in the folder.
     fn files(&self) -> Vec<String> {
         let Ok(files) = fs::read_dir(self.archive().folder().unwrap()) else { return Vec::new() };
@@ -223,14 +236,7 @@ fn a_session_is_kept_under_a_name_of_its_own_and_taken_up_again() {
 #[test]
 fn the_thread_writes_what_is_left_with_it_and_a_killed_program_is_seen() {
     let mut bench = Bench::new();
-    let autosave = Autosave::new(bench.archive());
-    autosave.start(|text| panic!("{text:?}")).unwrap();
-    autosave.offer(bench.does(Id::Step));
-    let begun = Instant::now();
-    while bench.names().is_empty() {
-        assert!(begun.elapsed() < PATIENCE, "nothing was written");
-        std::thread::sleep(Duration::from_millis(5));
-    }
+    let autosave = bench.written();
     assert_eq!(bench.archive().summary("fig-3-jkr-1").unwrap().ended, Ended::Running);
     // A copy without its lock is what a killed program leaves behind.
     let folder = bench.archive().folder().unwrap().to_owned();
@@ -242,14 +248,7 @@ fn the_thread_writes_what_is_left_with_it_and_a_killed_program_is_seen() {
 #[test]
 fn the_session_whose_connection_drops_last_is_the_newest() {
     let mut bench = Bench::new();
-    let autosave = Autosave::new(bench.archive());
-    autosave.start(|text| panic!("{text:?}")).unwrap();
-    autosave.offer(bench.does(Id::Step));
-    let begun = Instant::now();
-    while bench.names().is_empty() {
-        assert!(begun.elapsed() < PATIENCE, "nothing was written");
-        std::thread::sleep(Duration::from_millis(5));
-    }
+    let autosave = bench.written();
     let other = Autosave::new(bench.archive());
     other.offer(bench.does(Id::Step));
     other.finish(Ended::Dropped, PATIENCE).unwrap();

@@ -37,7 +37,7 @@ pub fn draw(frame: &mut Frame<'_>, area: Rect, app: &App) {
 struct Compared<'a> {
     now: &'a PathReport,
     pin: &'a PathReport,
-    /// What is compared, where that is not the path of the screen, or may be taken for another one.
+    /// What both are in a word, for the title; `None` for the path on the screen.
     name: Option<&'static str>,
 }
 

@@ -52,6 +52,8 @@ fn sentences_name_the_keys_of_a_person() {
     }
     says(&screen, "apart, lost");
     says(&screen, ". F6 restarts; begin=apart: whole loop");
+    let footer = screen.text(120, 40).lines().last().unwrap().to_owned();
+    assert!(footer.starts_with(" F4 undo  F6 start  ") && !footer.contains("F2 next"), "{footer}");
     screen.press(KeyCode::F(3));
     says(&screen, "the bodies are apart: F4 goes back, F6 starts again");
     // What was lost there is no loss of other values.
