@@ -400,9 +400,8 @@ pub fn below(panels: &Panels, s: f64, delta: f64, end: f64) -> Vec<(usize, [f64;
     found
 }
 
-/// A place `[r, gap]` where the gap around the disc is below `overlap`, where it may be negative on very many panels:
-/// bodies that overlap along hundreds of waves do so at one of a few places too. `None` elsewhere, and where none of these
-/// is one: then only [`least_gap`] tells.
+/// A place `[r, gap]` where the gap around the disc is below `overlap`. Where the gap may be negative on very many panels,
+/// a few of them are looked at. `None` proves nothing: then only [`least_gap`] tells.
 pub fn overlap_on_many(panels: &Panels, s: f64, delta: f64, end: f64, overlap: f64) -> Option<[f64; 2]> {
     /// More panels than this are many, of which about so many are looked at.
     const MANY: usize = 64;

@@ -158,8 +158,8 @@ fn of_pinned_edge(
     let start = found.parameters.iter().find(|parameter| parameter.key == START)?.value;
     (found.verdict == Verdict::Describes).then(|| {
         let sentence = format!(
-            "the first rows lie on the straight line of an edge that rests at s = {}: set {CLOSING_ADHESION}, to very little \
-             where it is not known. With that, the model describes the points",
+            "the first rows lie on the straight line of an edge that rests at s = {}: set {CLOSING_ADHESION}, to a very small \
+             value if it is not known. With that, the model describes the points",
             said(&preset.units, Quantity::Length, start)
         );
         Reason { kind: "dead-band", sentence, value: Some(found.chi_squared) }

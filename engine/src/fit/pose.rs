@@ -89,7 +89,7 @@ pub fn posed(
     })
 }
 
-/// The preset without what does not matter to other values than its own.
+/// The preset without its points and the ends of its path, which belong to its own values.
 fn bare(preset: &Preset, notes: &mut Vec<String>) -> Preset {
     let mut bare = preset.clone();
     // Its own points say nothing about other values.

@@ -23,7 +23,7 @@ pub(super) fn keep_retraction(data: &mut Vec<Datum>, notes: &mut Vec<String>) {
     if data.len() < before {
         notes.push(format!(
             "the {} points of the approach are left out: an edge with a speed is fitted to the retraction alone, as if it \
-             rested at the turn. After a fast approach it goes on closing for a while there, and values may be off by up to \
+             rested at the turn. After a fast approach the edge goes on closing for a while, and values may be off by up to \
              three errors: leave these rows out with --range x=..TO",
             before - data.len()
         ));

@@ -127,7 +127,7 @@ pub(super) fn pinned_again(
 }
 
 /// The nearest minimum where snaps lie among the points: each row that changes its side of a snap has a minimum of its
-/// own. Each value in turn is moved away by more errors than chance does, and fitted again.
+/// own. Each value in turn is moved by several errors, and then all are fitted again.
 pub(super) fn beyond_snaps(
     problem: &FitProblem,
     mut solved: SolvedFit,
