@@ -29,28 +29,34 @@ start_contact_radius = \"600 um\"
 pub const SPEEDS: [(&str, &str); 3] =
     [("0.1um/s", "slow.csv"), ("1um/s", "middle.csv"), ("10um/s", "fast.csv")];
 
-/// The pull of a preset at a rate: 120 rows evenly spaced in time and 30 after it, each displaced from the curve by the
-/// sine of its number.
+/// The pull of a preset at a rate, as [`recorded`] has it.
 pub fn pulled(home: &Home, preset: &str, rate: &str, file: &str) {
-    let ended = home.run(&["pull", preset, "--rate", rate, "--rows", "moments", "--format", "csv"]);
+    recorded(home, &[preset, "--rate", rate], (120, [3e-8, 4e-3]), file);
+}
+
+/// A pull, as `asked`, in so many rows evenly spaced in time, and a quarter as many after it, each displaced from the curve
+/// by the sine of its number: its approach by at most `noise[0]`, in metres, and its force by at most `noise[1]` of the largest.
+fn recorded(home: &Home, asked: &[&str], (rows, noise): (u32, [f64; 2]), file: &str) {
+    let ended = home.run(&[&["pull"], asked, &["--rows", "moments", "--format", "csv"]].concat());
     assert_eq!(ended.status, 0, "{}", ended.err);
-    let cells = |line: &str| line.split(',').map(|cell| cell.parse().unwrap()).collect::<Vec<f64>>();
+    let cells =
+        |line: &str| line.split(',').map(|cell| cell.parse().unwrap_or(f64::NAN)).collect::<Vec<f64>>();
     let moments: Vec<Vec<f64>> = ended.out.lines().skip(1).map(cells).collect();
     let moments: Vec<[f64; 3]> =
         moments.iter().filter(|row| row[3] > 0.0).map(|row| [row[1], row[4], row[5]]).collect();
-    let [end, from, _] = [moments[moments.len() - 1][0], moments[0][1], 0.0];
-    let speed = (from - moments[moments.len() - 1][1]) / end;
+    let [.., before, last] = &moments[..] else { panic!("{asked:?}") };
+    let speed = (before[1] - last[1]) / (last[0] - before[0]);
     let most = moments.iter().map(|[.., force]| force.abs()).fold(0.0, f64::max);
     let mut text = "time [s], approach [m], force [N]\n".to_owned();
-    for i in 0..150_u32 {
-        let time = f64::from(i) / 120.0 * end;
+    for i in 0..rows * 5 / 4 {
+        let time = f64::from(i) / f64::from(rows) * last[0];
         let after = moments.partition_point(|[at, ..]| *at <= time);
-        let force = moments.get(after).map_or(0.0, |[at, _, force]| {
-            let [before, _, first] = moments[after - 1];
-            first + (time - before) / (at - before) * (force - first)
+        let [approach, force] = moments.get(after).map_or([last[1] - speed * (time - last[0]), 0.0], |to| {
+            let from = moments[after - 1];
+            [1, 2].map(|k| from[k] + (time - from[0]) / (to[0] - from[0]) * (to[k] - from[k]))
         });
         let [one, other] = [f64::from(i).powi(2), f64::from(i).powi(3)].map(|x| (1.7 * x).sin());
-        let (approach, force) = (from - speed * time + 3e-8 * one, force + 4e-3 * most * other);
+        let (approach, force) = (approach + noise[0] * one, force + noise[1] * most * other);
         writeln!(text, "{time}, {approach}, {force}").unwrap();
     }
     home.file(file, &text);
@@ -140,4 +146,58 @@ fn three_speeds_are_fitted_together() {
     assert!(said.contains("--rate plays no part, as the edge has no law"), "{said}");
     let ended = fit(&["slow.csv", "fast.csv"], &["--residuals", "r.csv"]);
     assert!(ended.status == 2 && ended.err.contains("--together"), "{}", ended.err);
+}
+
+#[test]
+fn rows_in_which_the_edge_still_closes_are_left_out() {
+    let home = Home::new();
+    home.file("soft.toml", SOFT);
+    let programme = ["--set", "path.steps=to 25um at 1um/s; apart at 1um/s"];
+    let start = ["soft.toml", "--set", "path.start_contact_radius=150um"];
+    recorded(&home, &[&start[..], &programme].concat(), (400, [3e-9, 4e-4]), "loop.csv");
+    let text = home.text("loop.csv");
+    let at = |line: &&str| line.split(',').nth(1).unwrap().trim().parse::<f64>().unwrap();
+    let rows: Vec<&str> = text.lines().skip(1).collect();
+    let top = (0..rows.len()).max_by(|a, b| at(&rows[*a]).total_cmp(&at(&rows[*b]))).unwrap();
+    home.file("back.csv", &[&["time [s], approach [m], force [N]"], &rows[top..]].concat().join("\n"));
+    let fit = |file: &str, more: &[&str]| {
+        let fit = [
+            "fit",
+            file,
+            "soft.toml",
+            "--free",
+            "E*,gamma,v0",
+            "--format=json",
+            "-o",
+            "own.toml",
+            "--overwrite",
+        ];
+        let ended = home.run(&[&fit[..], more].concat());
+        let document: Value = serde_json::from_str(&ended.out).expect(&ended.err);
+        let off =
+            document["parameters"].as_array().unwrap().iter().zip([1.5e6, 0.045, 1e-6]).map(|(of, truth)| {
+                let [value, error] = ["value", "standard_error"].map(|name| of[name].as_f64().unwrap());
+                (value - truth).abs() / error
+            });
+        (ended.status, off.fold(0.0, f64::max), ended.err, document)
+    };
+    let (status, off, err, document) = fit("loop.csv", &[]);
+    assert!(status == 0 && off < 2.0, "{off} {err}");
+    let notes = document["notes"].to_string();
+    assert!(
+        notes.contains("after an approach at 1.0") && notes.contains("the edge still closes there"),
+        "{notes}"
+    );
+    // What is left out of a fit is left out beside its curve, too.
+    let store = Store::at(home.folder(), &[]);
+    let own = store.load::<&str>(&Source::File(home.path("own.toml")), &[]).unwrap().preset;
+    let (_, beside) = residuals_own(&own).unwrap();
+    let in_contact = beside.iter().filter(|found| !found.datum.free).map(|found| found.residual.abs());
+    assert!(in_contact.fold(0.0, f64::max) < 6.0, "{beside:?}");
+    // A retraction alone does not show how fast the approach was.
+    let (status, off, err, _) = fit("back.csv", &[]);
+    assert!(off > 2.5 || status != 0, "{off}: the rows make no difference");
+    let range = err.split_once("leave them out with --range ").unwrap().1.split_once('\n').unwrap().0;
+    let (status, off, err, _) = fit("back.csv", &["--range", range]);
+    assert!(status == 0 && off < 2.0, "{range} {off} {err}");
 }

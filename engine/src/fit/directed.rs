@@ -5,6 +5,7 @@ use super::judge::BRANCHES;
 use super::options::{FitError, Options};
 use super::outcome::Fit;
 use super::problem::START;
+use super::pulled::is_pulled;
 use super::run::fit_branches;
 use super::verdict::{Reason, Verdict};
 use crate::measured::asked::signs_text;
@@ -145,10 +146,9 @@ fn of_pinned_edge(
 ) -> Option<Reason> {
     /// What the closing edge is taken to gain, over γ: the less, the longer the line on which the first rows may lie.
     const LEAST: f64 = 1e-6;
-    let is_pulled = preset.edge.rate.is_some() || options.free.iter().any(|key| key.starts_with("edge."));
     let has_closing = preset.edge.closing_work_of_adhesion.is_some();
     let alone = own.rows.approach.contact == 0;
-    if own.verdict != Verdict::DoesNotDescribe || is_pulled || has_closing || !alone {
+    if own.verdict != Verdict::DoesNotDescribe || is_pulled(&own.preset) || has_closing || !alone {
         return None;
     }
     let mut pinned = preset.clone();

@@ -16,6 +16,7 @@
 //! | [`options`] | what is asked for, what can be free, why there is no fit |
 //! | [`pose`] | points and parameters of the requested fit |
 //! | `rates` | the rate at which the points of a retraction are pulled |
+//! | `approached` | rows of a retraction in which the edge still closes |
 //! | [`start`] | where a fit starts |
 //! | [`solve`] | one fit with its own scale of the noise |
 //! | [`determined`] | covariance, condition, the direction in words |
@@ -44,6 +45,7 @@
 //! Distances are measured to the curve itself and not along one axis: a residual P − P(x) jumps when the values change
 //! so that the pull-off passes a point, and its intervals then hold the truth in 8 % of trials.
 
+mod approached;
 mod bias;
 pub mod chance;
 mod degrees;

@@ -12,10 +12,11 @@
 
 use super::mover::Mover;
 use super::reach::{Eye, Reach};
+use crate::case;
 use crate::disc::{Basis, ExactBasis, Table};
 use crate::elementary::pow;
 use crate::preset::Preset;
-use crate::problem::{Control, Part, Reduced, Start};
+use crate::problem::{Control, Part, Printer, Reduced, Start};
 use crate::progress::Unwatched;
 use crate::rate::variation::{ADHESION, EXPONENT, MomentSlopes, RATE, START, STIFFNESS};
 use crate::rate::{EdgeLaw, Moment, MovingEdge, PullSettings, Puller};
@@ -62,6 +63,69 @@ pub(super) fn is_pulled(preset: &Preset) -> bool {
         && matches!(preset.path.start, Start::ContactRadius(_))
 }
 
+/// What pulls the disc of `preset` from the contact radius at which it starts, and its rate, in reduced units; `None` where
+/// the preset has no pull, or one that is too fast.
+fn puller<'a>(
+    preset: &Preset,
+    reduced: &Reduced,
+    table: &'a Table,
+    held: Control,
+    tolerance: f64,
+) -> Option<(Puller<'a>, f64)> {
+    let units = reduced.units;
+    let Start::ContactRadius(start) = preset.path.start else { return None };
+    let edge = &preset.edge;
+    let (rate, exponent) = (edge.rate?, edge.exponent?);
+    let closing_speed =
+        edge.closing_speed.zip(edge.reference_speed).map(|(closing, opening)| closing / opening);
+    let [value, time] = unit_of(preset, reduced, held)?;
+    let rate = rate / value * time;
+    let [slowest, fastest] = EXCESS.map(|excess| pow(excess, 1.0 / exponent));
+    let opening = reduced.work_of_adhesion;
+    let closing = edge.closing_work_of_adhesion.map(|gamma| gamma / units.work_of_adhesion);
+    let puller = Puller {
+        table,
+        control: held,
+        edge: MovingEdge {
+            law: EdgeLaw::symmetric(exponent).with_closing(closing_speed, edge.closing_exponent),
+            opening,
+            closing: closing.filter(|closing| *closing < opening).unwrap_or(opening),
+        },
+        start: (start / units.length).min(reduced.largest_contact()),
+        wave: reduced.gap.feature_length(),
+        rise: None,
+        settings: PullSettings { tolerance, derivatives: true, ..PullSettings::default() },
+    };
+    (rate <= fastest).then(|| (puller, rate.max(slowest)))
+}
+
+/// The units of the control and of time; `None` where the edge has no law.
+fn unit_of(preset: &Preset, reduced: &Reduced, held: Control) -> Option<[f64; 2]> {
+    let units = reduced.units;
+    let value = if held == Control::Force { units.force } else { units.length };
+    Some([value, units.length / preset.edge.reference_speed?])
+}
+
+/// The value of the control at which the edge of `preset` comes to rest behind the turn, where the control went up to `turn`
+/// at `rate` and stayed there for the time `hold`. `length` is that by which a gap without one of its own is reduced.
+pub(super) fn rest_behind(preset: &Preset, length: f64, turn: f64, [rate, hold]: [f64; 2]) -> Option<f64> {
+    /// The approach is followed from this share of the contact radius on: what was before is forgotten.
+    const FROM: f64 = 0.3;
+    let reduced = preset.problem().reduced_by(preset.gap.length().unwrap_or(length));
+    let held = preset.path.control.in_units(reduced.units.stiffness);
+    let table = case::table(&preset.gap, &reduced, 1.0, &Printer::reduced(), &Unwatched).ok()?;
+    let (puller, away) = puller(preset, &reduced, &table, held, TOLERANCE[1])?;
+    let puller = Puller { start: FROM * puller.start, ..puller };
+    let [value, time] = unit_of(preset, &reduced, held)?;
+    let up = Part::Ramp { to: turn, rate }.in_units(1.0 / value, 1.0 / time);
+    let hold = (hold > 0.0).then(|| Part::Hold { time: hold / time });
+    let programme: Vec<Part> =
+        [Some(up), hold, Some(Part::Apart { rate: away })].into_iter().flatten().collect();
+    let pull = puller.pull(&programme, &Unwatched).ok()?;
+    let largest = pull.moments.iter().max_by(|a, b| a.contact_radius.total_cmp(&b.contact_radius))?;
+    (largest.time > pull.start.time).then_some(largest.control * value)
+}
+
 impl Trail {
     /// The pull of `preset` until the bodies are apart; `None` where there is none, or where it cannot be followed.
     pub(super) fn of(
@@ -71,36 +135,14 @@ impl Trail {
         (eye, reach): (&Eye, &Reach),
         held: Control,
     ) -> Option<Self> {
-        let units = reduced.units;
-        let Start::ContactRadius(start) = preset.path.start else { return None };
-        let (rate, speed, exponent) =
-            (preset.edge.rate?, preset.edge.reference_speed?, preset.edge.exponent?);
-        let opening = reduced.work_of_adhesion;
-        let closing = preset.edge.closing_work_of_adhesion.map(|gamma| gamma / units.work_of_adhesion);
-        let unit = if held == Control::Force { units.force } else { units.length };
-        let rate = rate / unit * (units.length / speed);
-        let [slowest, fastest] = EXCESS.map(|excess| pow(excess, 1.0 / exponent));
-        let start = (start / units.length).min(reduced.largest_contact());
+        let tolerance = (OF_NOISE * reach.noise).clamp(TOLERANCE[0], TOLERANCE[1]);
+        let (puller, rate) = puller(preset, reduced, table, held, tolerance)?;
+        let start = puller.start;
         let begun = ExactBasis::new(Arc::clone(table), start).equilibrium(reduced, start)?;
         let beyond = eye.x([start, begun.approach, begun.force]) - reach.turn[0];
-        if rate > fastest || beyond > FAR * reach.length {
+        if beyond > FAR * reach.length {
             return None;
         }
-        let rate = rate.max(slowest);
-        let tolerance = (OF_NOISE * reach.noise).clamp(TOLERANCE[0], TOLERANCE[1]);
-        let puller = Puller {
-            table,
-            control: held,
-            edge: MovingEdge {
-                law: EdgeLaw::symmetric(exponent),
-                opening,
-                closing: closing.filter(|closing| *closing < opening).unwrap_or(opening),
-            },
-            start,
-            wave: reduced.gap.feature_length(),
-            rise: None,
-            settings: PullSettings { tolerance, derivatives: true, ..PullSettings::default() },
-        };
         let pull = puller.pull(&[Part::Apart { rate }], &Unwatched).ok()?;
         let last = pull.moments.iter().rfind(|moment| moment.contact_radius > 0.0)?;
         let (first, way) = (pull.start, (pull.start.control - last.control).abs());

@@ -22,9 +22,7 @@ pub(super) fn keep_retraction(data: &mut Vec<Datum>, notes: &mut Vec<String>) {
     data.retain(|datum| datum.segment == Segment::Retraction);
     if data.len() < before {
         notes.push(format!(
-            "the {} points of the approach are left out: an edge with a speed is fitted to the retraction alone, as if it \
-             rested at the turn. After a fast approach the edge goes on closing for a while, and values may be off by up to \
-             three errors: leave these rows out with --range x=..TO",
+            "the {} points of the approach are left out: an edge with a speed is fitted to the retraction alone",
             before - data.len()
         ));
     }
@@ -102,7 +100,7 @@ fn even_rate(points: &[&MeasuredPoint]) -> Option<[f64; 2]> {
 }
 
 /// −dx/dt and its standard error.
-fn rate(points: &[&MeasuredPoint]) -> Option<[f64; 2]> {
+pub(super) fn rate(points: &[&MeasuredPoint]) -> Option<[f64; 2]> {
     let n = points.len() as f64;
     let mean = |of: fn(&MeasuredPoint) -> f64| points.iter().map(|point| of(point)).sum::<f64>() / n;
     let [time, x] = [mean(|point| point.time), mean(|point| point.x)];

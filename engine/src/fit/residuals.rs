@@ -1,5 +1,6 @@
 //! The points compared with a curve.
 
+use super::approached::Approached;
 use super::least_squares::LeastSquares;
 use super::options::{FitError, Options};
 use super::pose::posed;
@@ -40,6 +41,10 @@ pub fn residuals_own(preset: &Preset) -> Result<(Abscissa, Vec<Residual>), FitEr
         None => problem,
     };
     let u = at_start(&problem);
+    let problem = match Approached::of(&problem, &branches) {
+        Some(approached) => approached.seen(problem, &u),
+        None => problem,
+    };
     let residuals = LeastSquares::residuals(&problem, &u).ok_or(FitError::NoStart)?;
     let scale = problem.scale(&residuals);
     Ok((branches.abscissa, beside(&problem, &residuals, scale)))

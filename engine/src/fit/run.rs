@@ -1,5 +1,6 @@
 //! A whole fit, in order: branches, start, minimum, errors, doubts.
 
+use super::approached::Approached;
 use super::bias::of_bias;
 use super::determined::{Determined, determined};
 use super::fitted::{Fitted, too_small, unmoved, values};
@@ -59,6 +60,8 @@ pub(super) struct Posed<'a> {
     starts: Vec<Tried>,
     pub(super) solved: SolvedFit,
     notes: Vec<String>,
+    /// What is doubtful about its rows, in words.
+    doubt: Option<String>,
 }
 
 impl<'a> Posed<'a> {
@@ -101,6 +104,13 @@ impl<'a> Posed<'a> {
                 last(&mut problem, &u, options.robust, least, &ProgressPart::new(progress, [0.8, 0.85]))?;
             notes.push("no rows show that the edge is pinned before it recedes".to_owned());
         }
+        let mut doubt = None;
+        if let Some(approached) = Approached::of(&problem, branches) {
+            let progress = ProgressPart::new(progress, [0.8, 0.85]);
+            let solve =
+                |problem: &mut FitProblem, u: &[f64]| last(problem, u, options.robust, least, &progress).ok();
+            (problem, solved, doubt) = approached.settled(problem, solved, &mut notes, &solve);
+        }
         if let Some(j) = unseen_start(&problem, &solved) {
             (problem, solved) = held_start(&problem, solved, j, |problem, u| {
                 last(problem, u, options.robust, least, &ProgressPart::new(progress, [0.8, 0.85]))
@@ -133,7 +143,7 @@ impl<'a> Posed<'a> {
             solved = of_tare(&mut problem, solved, options.robust, (&mut notes, progress));
         }
         notes.extend(of_no_free_part(&problem, branches));
-        Ok(Self { preset, branches, options, problem, starts, solved, notes })
+        Ok(Self { preset, branches, options, problem, starts, solved, notes, doubt })
     }
 
     /// The fit, where `what` is determined by its points `alone` or by others too.
@@ -144,7 +154,7 @@ impl<'a> Posed<'a> {
         alone: bool,
         progress: &dyn Progress,
     ) -> Result<Fit, FitError> {
-        let Self { preset, branches, options, problem, starts, solved, mut notes } = self;
+        let Self { preset, branches, options, problem, starts, solved, mut notes, doubt } = self;
         let u = &solved.minimum.parameters;
         let unseen = unseen(&problem, &solved, (&what, &scatter), options.robust, progress);
         let is_unseen = unseen.is_some();
@@ -175,7 +185,8 @@ impl<'a> Posed<'a> {
         let verdict = verdict(ending, what.errors.is_some(), &reasons);
         notes.extend(growth(&problem, u, &what, verdict));
         let residuals = beside(&problem, &solved.minimum.at.residuals, solved.scale);
-        let warnings = warned(evidence, (preset, branches), &reasons, &mut fitted);
+        let mut warnings = warned(evidence, (preset, branches), &reasons, &mut fitted);
+        warnings.extend(doubt);
         let closing = problem.preset_at(u, Segment::Approach).map(|preset| preset.material.work_of_adhesion);
         let instrument = problem.instrument_at(u).turned(problem.turned);
         let widest = problem.paths(u).map_or(0.0, |paths| extent(&problem, u, &paths)[0]);

@@ -50,6 +50,16 @@ impl EdgeLaw {
         Self { exponent, closing_speed: 1.0, closing_exponent: exponent }
     }
 
+    /// The same with another `v_a/v₀` and another m, where they are given.
+    #[must_use]
+    pub fn with_closing(self, speed: Option<f64>, exponent: Option<f64>) -> Self {
+        Self {
+            closing_speed: speed.unwrap_or(self.closing_speed),
+            closing_exponent: exponent.unwrap_or(self.closing_exponent),
+            ..self
+        }
+    }
+
     /// The reference speed and the exponent of a motion.
     pub fn of(self, motion: Motion) -> MotionLaw {
         match motion {

@@ -510,11 +510,8 @@ pub fn law(preset: &Preset) -> Result<(EdgeLaw, f64), PullError> {
     let exponent = spec.exponent.ok_or(PullError::NoLaw { key: edge::EXPONENT })?;
     let unit = (preset.units == UnitSystem::Reduced).then_some(1.0);
     let speed = spec.reference_speed.or(unit).ok_or(PullError::NoLaw { key: edge::REFERENCE_SPEED })?;
-    let law = EdgeLaw {
-        exponent,
-        closing_speed: spec.closing_speed.map_or(1.0, |closing| closing / speed),
-        closing_exponent: spec.closing_exponent.unwrap_or(exponent),
-    };
+    let closing = spec.closing_speed.map(|closing| closing / speed);
+    let law = EdgeLaw::symmetric(exponent).with_closing(closing, spec.closing_exponent);
     Ok((law, speed))
 }
 

@@ -1,0 +1,171 @@
+//! The rows of a retraction in which the edge still closes: after an approach at a rate G is below γ at the turn, and the
+//! edge comes to rest only where G has risen to γ. From there on it is pulled from equilibrium, as the model has it.
+
+use super::problem::{FitProblem, START, Target};
+use super::pulled::{is_pulled, rest_behind};
+use super::rates::rate;
+use super::solve::SolvedFit;
+use crate::measured::branches::MeasuredPoint;
+use crate::measured::{Abscissa, Branches, Instrument, Segment};
+use crate::problem::Control;
+use crate::units::Quantity;
+use crate::units::number::{said, short};
+
+/// The edge closes at most this much longer than the fitted values say, as a share of the way behind the turn.
+const MARGIN: f64 = 1.1;
+/// Rounds in which the values and the rows that are left out come to agree.
+const ROUNDS: usize = 2;
+/// Values that differ by more than so many errors contradict each other.
+const DIFFERENT: f64 = 1.0;
+/// So many rows at least are fitted for each parameter.
+const PER_PARAMETER: usize = 3;
+
+/// The approach before a pull.
+pub(super) struct Approached {
+    /// The rate of the control on the way up, and how long it was held at the turn.
+    way: [f64; 2],
+    /// Whether rows of the file show it. Otherwise it is taken to be as fast as the retraction.
+    is_seen: bool,
+}
+
+/// A fit without the rows in which the edge may still close.
+pub(super) struct WithoutClosing {
+    problem: FitProblem,
+    solved: SolvedFit,
+    /// How many rows are left out.
+    rows: usize,
+}
+
+impl Approached {
+    /// The approach before the points of `problem`; `None` where these are not those of a pull from a turn.
+    pub(super) fn of(problem: &FitProblem, branches: &Branches) -> Option<Self> {
+        if !is_pulled(&problem.preset) || branches.abscissa == Abscissa::Radius {
+            return None;
+        }
+        let of = |segment: Segment| {
+            let list = branches.list.iter().filter(move |branch| branch.segment == segment);
+            let mut points: Vec<&MeasuredPoint> = list.flat_map(|branch| &branch.attached).collect();
+            points.sort_by_key(|point| point.at);
+            points
+        };
+        let [up, down] = [of(Segment::Approach), of(Segment::Retraction)];
+        let is_way =
+            branches.abscissa == Abscissa::Position || problem.preset.path.control == Control::Displacement;
+        let measured = rate(&up).map(|[rate, _]| -rate).filter(|rate| is_way && *rate > 0.0);
+        let pause = down.first().zip(up.last()).map(|(first, last)| first.time - last.time);
+        let hold = pause.filter(|pause| *pause > 0.0).unwrap_or(0.0);
+        let is_seen = !up.is_empty();
+        Some(Self { way: [measured.or(problem.preset.edge.rate)?, hold], is_seen })
+    }
+
+    /// `problem` without the rows in which the edge still closes at the values `u`; `None` where there are none.
+    fn without(&self, problem: &FitProblem, u: &[f64]) -> Option<FitProblem> {
+        let preset = problem.preset_at(u, Segment::Retraction)?;
+        let at = problem.instrument_at(u);
+        let value = |place| driven(problem.abscissa, preset.path.control, &at, place);
+        let turn = value(problem.reach.turn);
+        let rest = rest_behind(&preset, problem.reach.length, turn, self.way)?;
+        let last = turn - MARGIN * (turn - rest);
+        let mut left = problem.clone();
+        left.data.retain(|datum| datum.free || value([datum.point.x, datum.point.force]) <= last);
+        let rows = left.data.iter().filter(|datum| !datum.free).count();
+        (left.data.len() < problem.data.len() && rows >= PER_PARAMETER * problem.parameters.len())
+            .then_some(left)
+    }
+
+    /// `problem` at the values `u`, without the rows in which the edge still closes if the file has the approach.
+    pub(super) fn seen(&self, problem: FitProblem, u: &[f64]) -> FitProblem {
+        let left = if self.is_seen { self.without(&problem, u) } else { None };
+        left.unwrap_or(problem)
+    }
+
+    /// The fit without the rows in which the edge still closes, if the file has the approach. If it has not, the whole fit,
+    /// with what is doubtful about it where these rows matter.
+    pub(super) fn settled(
+        &self,
+        whole: FitProblem,
+        from: SolvedFit,
+        notes: &mut Vec<String>,
+        solve: &impl Fn(&mut FitProblem, &[f64]) -> Option<SolvedFit>,
+    ) -> (FitProblem, SolvedFit, Option<String>) {
+        let mut found: Option<WithoutClosing> = None;
+        for _ in 0..ROUNDS {
+            let solved = found.as_ref().map_or(&from, |found| &found.solved);
+            let u = &solved.minimum.parameters;
+            let Some(mut problem) = self.without(&whole, u) else { break };
+            let Some(solved) = solve(&mut problem, u) else { break };
+            let rows = whole.data.len() - problem.data.len();
+            found = Some(WithoutClosing { problem, solved, rows });
+        }
+        let Some(found) = found else { return (whole, from, None) };
+        if !self.is_seen {
+            let doubt = found.doubt(&whole, &from);
+            return (whole, from, doubt);
+        }
+        let held_by_force = whole.preset.path.control == Control::Force;
+        let quantity = if held_by_force { Quantity::Force } else { Quantity::Speed };
+        notes.push(format!(
+            "the first {} rows of the retraction are left out: after an approach at {} the edge still closes there",
+            found.rows,
+            said(&whole.preset.units, quantity, self.way[0])
+        ));
+        (found.problem, found.solved, None)
+    }
+}
+
+impl WithoutClosing {
+    /// That the rows which are left out may not be those of an edge that rests, where they matter to the `whole` fit.
+    fn doubt(&self, whole: &FitProblem, from: &SolvedFit) -> Option<String> {
+        let Self { problem, solved, rows } = self;
+        let why = match moved(from, solved, problem) {
+            _ if self.contradicts(whole, from) => "which contradict an edge that rests".to_owned(),
+            Some((key, by)) => format!("without which {key} differs by {} of its errors", short(by, 2)),
+            None => return None,
+        };
+        let largest = problem.data.iter().filter(|datum| !datum.free).map(|datum| datum.point.x);
+        let to = largest.fold(f64::NEG_INFINITY, f64::max);
+        let text = |to| said(&whole.preset.units, Quantity::Length, to);
+        let range = if whole.turned[0] { format!("{}..", text(-to)) } else { format!("..{}", text(to)) };
+        Some(format!(
+            "the edge is taken to rest where the retraction begins. After an approach as fast as the retraction it would still \
+             close in the first {rows} rows, {why}: leave them out with --range x={range}"
+        ))
+    }
+
+    /// Whether the rows that are left out contradict the `whole` fit, whose minimum is `from`.
+    fn contradicts(&self, whole: &FitProblem, from: &SolvedFit) -> bool {
+        /// The sum of the squares of so many residuals exceeds their number by at most so many standard deviations.
+        const SURE: f64 = 2.0;
+        let Self { problem, solved, rows } = self;
+        // σ of the force may change from fit to fit.
+        let cost = |problem: &FitProblem, solved: &SolvedFit| solved.minimum.cost * problem.sigma[1].powi(2);
+        let unit = (solved.scale * problem.sigma[1]).powi(2);
+        let residuals = (rows * whole.per_point()) as f64;
+        2.0 * (cost(whole, from) - cost(problem, solved)) / unit > residuals + SURE * (2.0 * residuals).sqrt()
+    }
+}
+
+/// The value of the control at x and P of the points.
+fn driven(abscissa: Abscissa, control: Control, at: &Instrument, [x, force]: [f64; 2]) -> f64 {
+    let (way, force) = (x - at.offset, force - at.baseline - at.tilt * x);
+    match control {
+        Control::Force => force,
+        Control::Stiffness(k) if abscissa == Abscissa::Approach => way + force / k,
+        Control::Displacement | Control::Stiffness(_) => way,
+    }
+}
+
+/// The value that differs most between two fits, by how many errors of the second one; `None` where none differs.
+fn moved(one: &SolvedFit, two: &SolvedFit, problem: &FitProblem) -> Option<(String, f64)> {
+    let jacobian = &two.minimum.at.jacobian;
+    let covariance = jacobian.tr_mul(jacobian).try_inverse()?;
+    let by = |j: usize| {
+        let error = two.scale * covariance[(j, j)].sqrt();
+        (two.minimum.parameters[j] - one.minimum.parameters[j]).abs() / error
+    };
+    // Where the edge starts is another place in either fit.
+    let of_start = Target::Key(START.to_owned());
+    let others = problem.parameters.iter().enumerate().filter(|(_, parameter)| parameter.target != of_start);
+    let all = others.map(|(j, parameter)| (parameter.key(), by(j)));
+    all.max_by(|a, b| a.1.total_cmp(&b.1)).filter(|(_, by)| *by > DIFFERENT)
+}
