@@ -384,7 +384,8 @@ fn peaks(record: &Record, rise: f64) -> Vec<Moment> {
     let first = record.least.first().map_or(0.0, |least| least.at.time);
     let before = record.moments.iter().take_while(|moment| moment.time <= first);
     let mut highest = before.map(|moment| moment.force).fold(f64::NEG_INFINITY, f64::max);
-    for LeastForce { at, then } in &record.least {
+    // What dips while the edge closes is no tension.
+    for LeastForce { at, then } in record.least.iter().filter(|least| least.at.speed >= 0.0) {
         candidate = match candidate {
             None if highest - at.force <= rise => {
                 highest = highest.max(*then);
