@@ -151,7 +151,7 @@ pub enum PointsError {
     /// A deflection or a position without a spring.
     #[error(
         "the {0} needs the stiffness of the spring: set path.control.stiffness; if the device is rigid, the column is the \
-         approach: --columns or data.columns says so, as in \"approach=2\""
+         approach: --columns or data.columns says so, as \"approach=\" with its number or name"
     )]
     NoSpring(&'static str),
     /// A column that does not vary.
