@@ -118,7 +118,7 @@ impl Background for FitProgress {
     fn says(model: &Model) -> Option<String> {
         model.results.under_way::<Self>()?;
         let percent = if let Some(Self::Percent(percent)) = model.results.so_far() { *percent } else { 0 };
-        Some(format!("fitting, {percent} %; {} takes the best so far", Id::Cancel.named()))
+        Some(format!("fitting, {percent} %; {}: best so far", Id::Cancel.named()))
     }
 }
 

@@ -104,7 +104,7 @@ impl PullData {
         let smooth = smooth.map(|force| format!(", {} × smooth", three(run.peak.force / force)));
         let peaks = run.tension_peaks.len();
         let seen =
-            (!of_force && (1..=jumps).contains(&peaks)).then(|| format!("; {peaks}/{jumps} force peaks"));
+            (!of_force && (1..=jumps).contains(&peaks)).then(|| format!("; {peaks}/{jumps} jumps seen"));
         Some(format!(
             "Largest pull {peak} {rate}{}{}; edge to {}",
             smooth.unwrap_or_default(),

@@ -65,16 +65,17 @@ pub(super) fn change(model: &mut Model, preset: Preset) -> Vec<Effect> {
             model.stiffness = Some(k);
         }
     }
-    let selected = model.selected_knob().map(|(row, _)| row.key.clone());
+    let upto = model.parameter + 1;
+    let listed: Vec<_> = model.knobs().into_iter().take(upto).map(|(row, _)| row.key.clone()).collect();
     model.preset = preset;
     if same_problem {
         return Vec::new();
     }
     model.is_tried = false;
-    // The list may now have a key more or less: the same value stays selected.
+    // The list may now have a key more or less: the same value stays selected, or the last one above it that is left.
     let knobs = model.knobs();
-    let stays = knobs.iter().position(|(row, _)| selected.as_ref() == Some(&row.key));
-    model.parameter = stays.unwrap_or(model.parameter.min(knobs.len().saturating_sub(1)));
+    let at = |key: &Key| knobs.iter().position(|(row, _)| row.key == *key);
+    model.parameter = listed.iter().rev().find_map(at).unwrap_or(0);
     let mut effects = stop_walk(model);
     if model.shows_its_curve() {
         // Back at the values of the curve on the screen: the one being computed is no longer wanted.

@@ -235,13 +235,15 @@ fn happened(model: &Model, node: &Node) -> Option<String> {
                 format!("{what}: apart{}. {start} restarts{whole}", lost.unwrap_or_default())
             }
             _ => {
-                let way = if model.inward { "inward" } else { "outward" };
-                format!(
-                    "Landed{}, stable again. {} runs {way} to the next event, {} undoes",
-                    lost.unwrap_or_default(),
-                    Id::NextEvent.named(),
-                    Id::Undo.named()
-                )
+                let turns =
+                    !model.inward && model.is_at_outer_end() && model.preset.path.begin == Begin::Apart;
+                let goes_on = match model.inward {
+                    _ if turns => format!("Here the control turns round: {next} goes on down"),
+                    true => format!("{next} runs inward to the next event"),
+                    false => format!("{next} runs outward to the next event"),
+                };
+                let undo = Id::Undo.named();
+                format!("Landed{}, stable again. {goes_on}, {undo} undoes", lost.unwrap_or_default())
             }
         });
     }

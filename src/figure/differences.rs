@@ -47,7 +47,7 @@ pub fn figure(subject: &Subject<'_>) -> Figure {
     }
     let walker = subject.walk.last().filter(|node| subject.is_on_curve(node) && !node.is_apart());
     let walker = walker.map(|node| node.state.in_units(node.setting.units()));
-    let (mut said, mut here) = (Vec::new(), None);
+    let (mut pinned, mut said, mut here) = (Vec::new(), Vec::new(), None);
     for other in &others {
         let by_radius: Vec<(f64, f64)> = ours.at_equal_radius(&other.states).into_iter().map(place).collect();
         let by_approach = ours.at_equal_approach(&other.states).into_iter().map(place).collect();
@@ -56,12 +56,12 @@ pub fn figure(subject: &Subject<'_>) -> Figure {
             walker.and_then(|state| Some((state, (other.force)(state.contact_radius)?)))
         {
             let at = place([state.contact_radius, state.force - force]);
-            let pin = if let Role::Pin(number) = other.role {
-                format!("{} ", letter(number))
-            } else {
-                String::new()
-            };
-            said.push(format!("{pin}{} {}", other.name, significant(at.1, 3)));
+            // The legend has the names of pins, and here they come first.
+            let value = significant(at.1, 3);
+            match other.role {
+                Role::Pin(number) => pinned.push(format!("{} {value}", letter(number))),
+                _ => said.push(format!("{} {value}", other.name)),
+            }
             here.get_or_insert(at);
         }
         figure
@@ -71,7 +71,8 @@ pub fn figure(subject: &Subject<'_>) -> Figure {
     }
     figure.bounds = Bounds::of(figure.lines.iter().flat_map(|line| line.points.iter().copied()));
     if let Some(at) = here {
-        figure.notes.insert(0, format!("at @: {}", said.join(", ")));
+        pinned.append(&mut said);
+        figure.notes.insert(0, format!("at @: {}", pinned.join(", ")));
         figure.marks.push(Mark { sign: Sign::Walker, at });
     }
     figure

@@ -13,7 +13,7 @@ use super::scale::Scale;
 use super::subject::Subject;
 use crate::explorer::View;
 use crate::explorer::curve::CurvePoint;
-use pulloff_engine::problem::Control;
+use pulloff_engine::problem::{Begin, Control};
 use pulloff_engine::report::number::{loss, with_unit};
 use pulloff_engine::report::path::{EventReport, PathReport, PathStateReport, StateReport};
 use pulloff_engine::units::Quantity;
@@ -30,7 +30,18 @@ const FAITHFUL: f64 = 0.02;
 pub fn figure(subject: &Subject<'_>) -> Figure {
     let scale = subject.scale();
     match subject.cycle {
-        Some(report) => cycle_figure(report, &subject.curve.points, scale),
+        Some(report) => {
+            let mut figure = cycle_figure(report, &subject.curve.points, scale);
+            // The numbers on the screen are those of the path, and this is another one.
+            if subject.preset.path.begin == Begin::Disc {
+                for mark in &mut figure.marks {
+                    if let Sign::LastContact(number) = &mut mark.sign {
+                        *number = 0;
+                    }
+                }
+            }
+            figure
+        }
         None => Figure { missing: Some(NO_LOOP.to_owned()), ..blank(scale) },
     }
 }

@@ -76,7 +76,8 @@ pub enum Sign {
     Limit,
     /// The state in which an event of the path begins, by its number from 1.
     Event(usize),
-    /// The event that ends a path, by its number: the bodies come apart.
+    /// The event that ends a path, by its number: the bodies come apart. 0 where the numbers on the screen are those of
+    /// another path.
     LastContact(usize),
     /// A of the paper: where the bodies pull off under a dead load.
     LargestPull,

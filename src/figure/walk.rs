@@ -40,7 +40,8 @@ pub fn events_before<'a>(
     })
 }
 
-/// Adds the other branches of the walk to a view of the curve, whatever their problems, for comparison.
+/// Adds the other branches of the walk to a view of the curve, as far as they are states of its problem: to compare
+/// problems there are pins, which have names.
 pub fn branches(subject: &Subject<'_>, scale: Scale<'_>, view: View, figure: &mut Figure) {
     let place =
         |node: &Node, state: &State| scale.place(view, quantities(&state.in_units(node.setting.units())));
@@ -49,6 +50,7 @@ pub fn branches(subject: &Subject<'_>, scale: Scale<'_>, view: View, figure: &mu
         let mut steps: Vec<(f64, f64)> = Vec::new();
         for node in &branch.nodes {
             match &node.kind {
+                _ if !subject.is_on_curve(node) => lines.push(std::mem::take(&mut steps)),
                 NodeKind::Stale(_) => {}
                 // Without a landing the line would end nowhere.
                 NodeKind::Jump(event) if event.after.is_none() => {}

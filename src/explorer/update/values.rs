@@ -22,6 +22,9 @@ use pulloff_engine::units::{Quantity, UnitSystem, parse_quantity};
 use std::path::Path;
 use std::sync::Arc;
 
+/// The key of the formula of a gap.
+const FORMULA: &str = "gap.formula";
+
 /// The stiffness of the contact at the start in the user's units; while there is no curve, the unit of stiffness.
 fn contact_stiffness(model: &Model) -> f64 {
     let known = model.curve.as_ref().and_then(|curve| {
@@ -141,7 +144,7 @@ pub(super) fn set(model: &mut Model, key: &str, text: &str) -> Vec<Effect> {
     match (result, loses_points(model, &preset)) {
         (Ok(_), Some(why)) => model.refuse(why),
         (Ok(said), None) => {
-            if row.key == "gap.formula" {
+            if row.key == FORMULA {
                 let before = before_tried(model).clone();
                 tell_new_parameters(model, &before, &preset);
             }
@@ -326,6 +329,10 @@ pub(super) fn assigned(model: &mut Model, preset: Preset, assignments: &[Assignm
     }
     if preset == *before_tried(model) {
         tell_same(model, assignments);
+    }
+    if assignments.iter().any(|(key, _)| key == FORMULA) {
+        let before = before_tried(model).clone();
+        tell_new_parameters(model, &before, &preset);
     }
     model.untried = None;
     tell_points(model, &preset);

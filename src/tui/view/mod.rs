@@ -20,7 +20,7 @@ use super::overlay::Dialog;
 use crate::explorer::ScreenPanel;
 use ratatui::Frame;
 use ratatui::layout::Rect;
-use ratatui::text::Line;
+use ratatui::widgets::{Paragraph, Wrap};
 
 use parts::is_selected;
 
@@ -34,7 +34,7 @@ pub fn draw(frame: &mut Frame<'_>, app: &App) -> usize {
     let Some(regions) = places(app, area) else {
         let (width, height) = SMALLEST;
         let text = format!("pulloff needs {width}x{height}, this is {}x{}", area.width, area.height);
-        frame.render_widget(Line::raw(text), Rect { height: area.height.min(1), ..area });
+        frame.render_widget(Paragraph::new(text).wrap(Wrap { trim: true }), area);
         return 1;
     };
     header::draw(frame, regions.header, app);

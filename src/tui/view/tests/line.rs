@@ -297,3 +297,31 @@ fn figures_and_the_screen_are_exported_by_a_line() {
     screen.keys("\x1b").keys(&format!(":export figure {} wak\r", path("d.svg")));
     assert!(screen.text(100, 30).contains("did you mean walk?"), "{}", screen.text(100, 30));
 }
+
+#[test]
+fn a_formula_set_by_a_line_names_its_new_parameters() {
+    let mut screen = Screen::new("formula");
+    screen.keys(":set gap.formula=r^2/(2*R)+D*r^4\r");
+    assert!(screen.text(120, 40).contains("new parameter D = 1"), "{}", screen.text(120, 40));
+}
+
+#[test]
+fn what_is_undone_of_other_values_is_not_drawn_and_the_selection_stays_near() {
+    let mut screen = Screen::new("wavy-sphere");
+    screen.keys("nnuu");
+    assert!(screen.text(120, 40).contains("other branch"), "{}", screen.text(120, 40));
+    let mut screen = Screen::new("wavy-sphere");
+    screen.keys(":set gap.amplitude=0.005\rnnnnuuuuu");
+    assert!(!screen.text(120, 40).contains("other branch"), "{}", screen.text(120, 40));
+    // A value that an undo takes out of the list hands the selection to the value above it.
+    screen.keys(":set edge.reference_speed=0.01 edge.exponent=0.5 path.rate=0.001\r");
+    screen.keys(":study peak_force path.rate=log:1e-4..1e-2\r");
+    let key = |screen: &Screen| screen.app.model.selected_knob().unwrap().0.key.to_string();
+    assert_eq!(key(&screen), "path.rate");
+    screen.keys("uu");
+    assert!(
+        screen.app.model.preset.edge.rate.is_none() && key(&screen).starts_with("path."),
+        "{}",
+        key(&screen)
+    );
+}

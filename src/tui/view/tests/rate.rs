@@ -51,7 +51,7 @@ fn the_pull_lies_over_the_curve_with_the_largest_pull_of_the_command() {
     screen.keys(":view force-time\r");
     let drawn = screen.text(160, 45);
     assert!(drawn.contains("P/Pc over t") && drawn.contains("P/Pc -2.730"), "{drawn}");
-    let said = "Largest pull 2.73 P_c at 1 v₀, 1.12 × smooth; 6/8 force peaks; edge to 11.6 v₀";
+    let said = "Largest pull 2.73 P_c at 1 v₀, 1.12 × smooth; 6/8 jumps seen; edge to 11.6 v₀";
     assert!(screen.text(80, 24).contains(said), "{drawn}");
 }
 
