@@ -1,11 +1,12 @@
 //! The rows of a retraction in which the edge still closes: after an approach at a rate G is below γ at the turn, and the
 //! edge comes to rest only where G has risen to γ. From there on it is pulled from equilibrium, as the model has it.
 
+use super::least_squares::LeastSquares;
 use super::problem::{FitProblem, START, Target};
 use super::pulled::{is_pulled, rest_behind};
 use super::rates::rate;
 use super::solve::SolvedFit;
-use crate::measured::branches::MeasuredPoint;
+use crate::measured::branches::{MeasuredPoint, median};
 use crate::measured::{Abscissa, Branches, Instrument, Segment};
 use crate::problem::Control;
 use crate::units::Quantity;
@@ -28,14 +29,6 @@ pub(super) struct Approached {
     is_seen: bool,
 }
 
-/// A fit without the rows in which the edge may still close.
-pub(super) struct WithoutClosing {
-    problem: FitProblem,
-    solved: SolvedFit,
-    /// How many rows are left out.
-    rows: usize,
-}
-
 impl Approached {
     /// The approach before the points of `problem`; `None` where these are not those of a pull from a turn.
     pub(super) fn of(problem: &FitProblem, branches: &Branches) -> Option<Self> {
@@ -52,10 +45,15 @@ impl Approached {
         let is_way =
             branches.abscissa == Abscissa::Position || problem.preset.path.control == Control::Displacement;
         let measured = rate(&up).map(|[rate, _]| -rate).filter(|rate| is_way && *rate > 0.0);
-        let pause = down.first().zip(up.last()).map(|(first, last)| first.time - last.time);
-        let hold = pause.filter(|pause| *pause > 0.0).unwrap_or(0.0);
-        let is_seen = !up.is_empty();
-        Some(Self { way: [measured.or(problem.preset.edge.rate)?, hold], is_seen })
+        let rate = measured.or(problem.preset.edge.rate)?;
+        let hold = down.first().zip(up.last()).map_or(0.0, |(first, last)| {
+            let pause = first.time - last.time;
+            // Rows without times are taken to be even in time.
+            let step = up.windows(2).map(|pair| (pair[1].x - pair[0].x).abs()).filter(|_| is_way).collect();
+            let even = || median(step).map(|step| (first.at - last.at) as f64 * step / rate);
+            if pause.is_finite() { pause } else { even().unwrap_or(0.0) }
+        });
+        Some(Self { way: [rate, hold.max(0.0)], is_seen: !up.is_empty() })
     }
 
     /// `problem` without the rows in which the edge still closes at the values `u`; `None` where there are none.
@@ -73,14 +71,16 @@ impl Approached {
             .then_some(left)
     }
 
-    /// `problem` at the values `u`, without the rows in which the edge still closes if the file has the approach.
+    /// `problem` at the values `u`, without the rows in which the edge still closes if the file has the approach, or if these
+    /// rows contradict an edge that rests.
     pub(super) fn seen(&self, problem: FitProblem, u: &[f64]) -> FitProblem {
-        let left = if self.is_seen { self.without(&problem, u) } else { None };
+        let left =
+            self.without(&problem, u).filter(|left| self.is_seen || contradicts(&problem, left, [u, u], 1.0));
         left.unwrap_or(problem)
     }
 
-    /// The fit without the rows in which the edge still closes, if the file has the approach. If it has not, the whole fit,
-    /// with what is doubtful about it where these rows matter.
+    /// The fit without the rows in which the edge still closes, if the file has the approach, or if these rows contradict an
+    /// edge that rests. Otherwise the whole fit, with what is doubtful about it where these rows matter.
     pub(super) fn settled(
         &self,
         whole: FitProblem,
@@ -88,61 +88,59 @@ impl Approached {
         notes: &mut Vec<String>,
         solve: &impl Fn(&mut FitProblem, &[f64]) -> Option<SolvedFit>,
     ) -> (FitProblem, SolvedFit, Option<String>) {
-        let mut found: Option<WithoutClosing> = None;
+        let mut found: Option<(FitProblem, SolvedFit)> = None;
         for _ in 0..ROUNDS {
-            let solved = found.as_ref().map_or(&from, |found| &found.solved);
-            let u = &solved.minimum.parameters;
+            let u = &found.as_ref().map_or(&from, |(_, solved)| solved).minimum.parameters;
             let Some(mut problem) = self.without(&whole, u) else { break };
             let Some(solved) = solve(&mut problem, u) else { break };
-            let rows = whole.data.len() - problem.data.len();
-            found = Some(WithoutClosing { problem, solved, rows });
+            found = Some((problem, solved));
         }
-        let Some(found) = found else { return (whole, from, None) };
-        if !self.is_seen {
-            let doubt = found.doubt(&whole, &from);
+        let Some((problem, solved)) = found else { return (whole, from, None) };
+        let rows = whole.data.len() - problem.data.len();
+        let both = [&from, &solved].map(|solved| &*solved.minimum.parameters);
+        let why = if self.is_seen {
+            let held_by_force = whole.preset.path.control == Control::Force;
+            let quantity = if held_by_force { Quantity::Force } else { Quantity::Speed };
+            format!(
+                "after an approach at {} the edge still closes there",
+                said(&whole.preset.units, quantity, self.way[0])
+            )
+        } else if contradicts(&whole, &problem, both, solved.scale) {
+            "they contradict an edge that rests at the turn, and may be those of one that still closes after a fast approach".to_owned()
+        } else {
+            let doubt = moved(&from, &solved, &problem).map(|(key, by)| doubt(&problem, rows, &key, by));
             return (whole, from, doubt);
-        }
-        let held_by_force = whole.preset.path.control == Control::Force;
-        let quantity = if held_by_force { Quantity::Force } else { Quantity::Speed };
-        notes.push(format!(
-            "the first {} rows of the retraction are left out: after an approach at {} the edge still closes there",
-            found.rows,
-            said(&whole.preset.units, quantity, self.way[0])
-        ));
-        (found.problem, found.solved, None)
+        };
+        notes.push(format!("the first {rows} rows of the retraction are left out: {why}"));
+        (problem, solved, None)
     }
 }
 
-impl WithoutClosing {
-    /// That the rows which are left out may not be those of an edge that rests, where they matter to the `whole` fit.
-    fn doubt(&self, whole: &FitProblem, from: &SolvedFit) -> Option<String> {
-        let Self { problem, solved, rows } = self;
-        let why = match moved(from, solved, problem) {
-            _ if self.contradicts(whole, from) => "which contradict an edge that rests".to_owned(),
-            Some((key, by)) => format!("without which {key} differs by {} of its errors", short(by, 2)),
-            None => return None,
-        };
-        let largest = problem.data.iter().filter(|datum| !datum.free).map(|datum| datum.point.x);
-        let to = largest.fold(f64::NEG_INFINITY, f64::max);
-        let text = |to| said(&whole.preset.units, Quantity::Length, to);
-        let range = if whole.turned[0] { format!("{}..", text(-to)) } else { format!("..{}", text(to)) };
-        Some(format!(
-            "the edge is taken to rest where the retraction begins. After an approach as fast as the retraction it would still \
-             close in the first {rows} rows, {why}: leave them out with --range x={range}"
-        ))
-    }
+/// Whether the rows of `whole` that are not in `left` contradict what is fitted to the others: by how much their residuals
+/// lower χ², with σ times `scale`, where the values are those of a fit with them and of one without.
+fn contradicts(whole: &FitProblem, left: &FitProblem, [with, without]: [&[f64]; 2], scale: f64) -> bool {
+    /// The sum of the squares of so many residuals exceeds their number by at most so many standard deviations.
+    const SURE: f64 = 3.0;
+    let mut kept = whole.clone();
+    kept.data.clone_from(&left.data);
+    let huber = f64::INFINITY;
+    let costs = whole.cost_at(with, huber).zip(kept.cost_at(without, huber));
+    let rows = ((whole.data.len() - left.data.len()) * whole.per_point()) as f64;
+    costs
+        .is_some_and(|(all, others)| 2.0 * (all - others) / scale.powi(2) > rows + SURE * (2.0 * rows).sqrt())
+}
 
-    /// Whether the rows that are left out contradict the `whole` fit, whose minimum is `from`.
-    fn contradicts(&self, whole: &FitProblem, from: &SolvedFit) -> bool {
-        /// The sum of the squares of so many residuals exceeds their number by at most so many standard deviations.
-        const SURE: f64 = 2.0;
-        let Self { problem, solved, rows } = self;
-        // σ of the force may change from fit to fit.
-        let cost = |problem: &FitProblem, solved: &SolvedFit| solved.minimum.cost * problem.sigma[1].powi(2);
-        let unit = (solved.scale * problem.sigma[1]).powi(2);
-        let residuals = (rows * whole.per_point()) as f64;
-        2.0 * (cost(whole, from) - cost(problem, solved)) / unit > residuals + SURE * (2.0 * residuals).sqrt()
-    }
+/// That the first rows, without which the value `key` differs by so many errors, may not be those of an edge that rests.
+fn doubt(left: &FitProblem, rows: usize, key: &str, by: f64) -> String {
+    let largest = left.data.iter().filter(|datum| !datum.free).map(|datum| datum.point.x);
+    let to = largest.fold(f64::NEG_INFINITY, f64::max);
+    let text = |to| said(&left.preset.units, Quantity::Length, to);
+    let range = if left.turned[0] { format!("{}..", text(-to)) } else { format!("..{}", text(to)) };
+    format!(
+        "the edge is taken to rest where the retraction begins. After an approach as fast as the retraction it would still close in \
+         the first {rows} rows, without which {key} differs by {} of its errors: leave them out with --range x={range}",
+        short(by, 2)
+    )
 }
 
 /// The value of the control at x and P of the points.

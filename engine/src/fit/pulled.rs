@@ -109,19 +109,21 @@ fn unit_of(preset: &Preset, reduced: &Reduced, held: Control) -> Option<[f64; 2]
 /// The value of the control at which the edge of `preset` comes to rest behind the turn, where the control went up to `turn`
 /// at `rate` and stayed there for the time `hold`. `length` is that by which a gap without one of its own is reduced.
 pub(super) fn rest_behind(preset: &Preset, length: f64, turn: f64, [rate, hold]: [f64; 2]) -> Option<f64> {
-    /// The approach is followed from this share of the contact radius on: what was before is forgotten.
-    const FROM: f64 = 0.3;
+    /// The approach is followed from the first of these shares of the contact radius from which it can be: what was before is
+    /// forgotten.
+    const FROM: [f64; 4] = [0.3, 0.5, 0.7, 0.85];
     let reduced = preset.problem().reduced_by(preset.gap.length().unwrap_or(length));
     let held = preset.path.control.in_units(reduced.units.stiffness);
     let table = case::table(&preset.gap, &reduced, 1.0, &Printer::reduced(), &Unwatched).ok()?;
     let (puller, away) = puller(preset, &reduced, &table, held, TOLERANCE[1])?;
-    let puller = Puller { start: FROM * puller.start, ..puller };
     let [value, time] = unit_of(preset, &reduced, held)?;
     let up = Part::Ramp { to: turn, rate }.in_units(1.0 / value, 1.0 / time);
     let hold = (hold > 0.0).then(|| Part::Hold { time: hold / time });
     let programme: Vec<Part> =
         [Some(up), hold, Some(Part::Apart { rate: away })].into_iter().flatten().collect();
-    let pull = puller.pull(&programme, &Unwatched).ok()?;
+    let from =
+        |share: f64| Puller { start: share * puller.start, ..puller }.pull(&programme, &Unwatched).ok();
+    let pull = FROM.into_iter().find_map(from)?;
     let largest = pull.moments.iter().max_by(|a, b| a.contact_radius.total_cmp(&b.contact_radius))?;
     (largest.time > pull.start.time).then_some(largest.control * value)
 }

@@ -286,8 +286,8 @@ impl FitProblem {
     fn left(&self, mut best: FitEnd, robust: bool, progress: &dyn Progress) -> FitEnd {
         /// How often, while that leads anywhere.
         const TIMES: usize = 3;
-        const KEYS: [&str; 3] = ["material.effective_modulus", edge::REFERENCE_SPEED, START];
-        const FACTORS: [[f64; 2]; 3] = [[0.7, 1.4], [0.1, 10.0], [0.7, 1.4]];
+        const KEYS: [&str; 4] = ["material.effective_modulus", edge::REFERENCE_SPEED, edge::EXPONENT, START];
+        const FACTORS: [[f64; 2]; 4] = [[0.7, 1.4], [0.1, 10.0], [0.3, 1.6], [0.7, 1.4]];
         for _ in 0..TIMES {
             let (before, from) = (best.distance, best.u.clone());
             for (key, factors) in KEYS.into_iter().zip(FACTORS) {

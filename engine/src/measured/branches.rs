@@ -22,7 +22,7 @@ use super::points::{Abscissa, Points, Turned, turn};
 use super::role::Segment;
 use super::sigma::noise;
 use super::signs::{Orientation, UnsignedPoints, is_swapped};
-use super::turns::{by_time, one_way, rises, runs};
+use super::turns::{by_time, one_way, rises, runs, without_hold};
 use crate::text::counted;
 use thiserror::Error;
 
@@ -253,6 +253,7 @@ impl Points {
             without_restarts(part);
         }
         let (rows, pauses) = self.counted(&parts);
+        parts.retain(|(segment, _)| *segment != Segment::Other);
         let is_wanted = |segment| asked.segment.is_none_or(|wanted| wanted == segment);
         let mut list: Vec<OrderedBranch> = parts
             .into_iter()
@@ -401,6 +402,17 @@ impl Points {
             );
         }
         notes.extend(self.order(&parts));
+        let held = |(segment, part): &mut (Segment, Vec<MeasuredPoint>)| {
+            without_hold(part, *segment == Segment::Retraction)
+        };
+        let pause: Vec<MeasuredPoint> = parts.iter_mut().flat_map(held).collect();
+        if !pause.is_empty() {
+            notes.push(format!(
+                "{} in which x stands still at the turn are left out as a pause",
+                counted(pause.len(), "row")
+            ));
+            parts.push((Segment::Other, pause));
+        }
         Ok(parts)
     }
 

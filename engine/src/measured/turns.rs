@@ -1,6 +1,6 @@
 //! Where x reverses: the branches of a file that names none, in any order and with any number of loops.
 
-use super::noise::{range, scatter_over};
+use super::noise::{median, range, scatter_over};
 use super::points::MeasuredPoint;
 use super::role::Segment;
 
@@ -12,6 +12,31 @@ const NOISE: f64 = 10.0;
 /// are in no order.
 const FEWEST: usize = 5;
 const IN_RUNS: f64 = 0.9;
+
+/// Takes the rows out of `part` in which x stands still at the turn: those at its beginning if it is a retraction, at its end
+/// if it is an approach. One of them stays.
+pub(super) fn without_hold(part: &mut Vec<MeasuredPoint>, is_retraction: bool) -> Vec<MeasuredPoint> {
+    /// x stands still where it changes by less than this share of a usual step.
+    const STILL: f64 = 0.5;
+    /// Steps of a converter make x stand still everywhere: a hold has this many times as many rows.
+    const LONGER: usize = 4;
+    let steps = part.windows(2).map(|pair| (pair[1].x - pair[0].x).abs()).filter(|step| *step > 0.0);
+    let steps: Vec<f64> = steps.collect();
+    let moving = steps.len();
+    let Some(step) = median(steps) else { return Vec::new() };
+    let stands = |turn: &MeasuredPoint, point: &MeasuredPoint| (point.x - turn.x).abs() <= STILL * step;
+    let count = match (&part[..], is_retraction) {
+        ([turn, rest @ ..], true) => rest.iter().take_while(|point| stands(turn, point)).count(),
+        ([rest @ .., turn], false) => rest.iter().rev().take_while(|point| stands(turn, point)).count(),
+        ([], _) => 0,
+    };
+    let usual = (part.len() - count) / moving.max(1);
+    if count < FEWEST.max(LONGER * usual) || part.len() - count < FEWEST {
+        return Vec::new();
+    }
+    let first = if is_retraction { 0 } else { part.len() - count };
+    part.drain(first..first + count).collect()
+}
 
 /// The parts of `points` over which x moves in one direction.
 pub(super) fn one_way(points: &[MeasuredPoint]) -> Vec<Vec<MeasuredPoint>> {

@@ -165,3 +165,28 @@ fn a_free_part_on_one_branch_alone_is_said_and_none_is_made_up() {
     let found = taken(&attached, &Asked::default()).unwrap();
     assert!(found.baseline.is_none() && parts(&found).iter().all(|part| part[2] == 0), "{:?}", parts(&found));
 }
+
+#[test]
+fn rows_in_which_x_stands_still_at_the_turn_are_a_pause() {
+    let row = |time: usize, x: f64, force: f64| format!("{time},{x},{force}\n");
+    let held = |rows: usize| {
+        let up = (0..60).map(|i| row(i, 0.1 * i as f64 - 3.0, (0.1 * i as f64 - 3.0).max(0.0)));
+        let hold = (0..rows).map(|i| row(60 + i, 3.0, 3.0 - 0.001 * i as f64));
+        let down = (0..80).map(|i| {
+            row(60 + rows + i, 3.0 - 0.1 * i as f64, if i < 40 { 3.0 - 0.1 * i as f64 } else { 0.0 })
+        });
+        let text = up.chain(hold).chain(down).collect::<String>();
+        let measured =
+            parse(format!("time,approach,force\n{text}").as_bytes(), &ColumnSpec::default()).unwrap();
+        measured.points(&UnitSystem::Reduced, None).unwrap().branches(&Asked::default()).unwrap()
+    };
+    let paused = held(30);
+    assert_eq!((paused.rows, paused.pauses), ([60, 80], 30), "{:?}", paused.notes);
+    assert!(
+        paused.notes.iter().any(|note| note.contains("30 rows in which x stands still")),
+        "{:?}",
+        paused.notes
+    );
+    // A few rows at the turn are no pause.
+    assert_eq!(held(3).pauses, 0);
+}
