@@ -16,7 +16,9 @@ use super::pulled::is_pulled;
 use super::residuals::{beside, of_part};
 use super::rows::Rows;
 use super::scatter::Scatter;
-use super::settled::{beyond_snaps, last, of_correlated, of_tare, pinned_again, unpinned, unseen_start};
+use super::settled::{
+    beyond_snaps, last, nearest, of_correlated, of_tare, pinned_again, unpinned, unseen_start,
+};
 use super::shown::{KnownNoise, of_shown_noise};
 use super::solve::SolvedFit;
 use super::start::{Tried, start};
@@ -81,10 +83,11 @@ impl<'a> Posed<'a> {
         let least = of_neighbours
             .then_some([if of_both { problem.sigma[0] } else { f64::INFINITY }, FLOOR * branches.ranges[1]]);
         let found = |problem: &mut FitProblem| -> Result<_, FitError> {
-            let (u, starts) =
-                start(problem, options.scan, options.robust, &ProgressPart::new(progress, [0.0, 0.8]))
-                    .ok_or(FitError::NoStart)?;
-            Ok((starts, last(problem, &u, options.robust, least, &ProgressPart::new(progress, [0.8, 0.85]))?))
+            let ends = start(problem, options.scan, options.robust, &ProgressPart::new(progress, [0.0, 0.8]))
+                .ok_or(FitError::NoStart)?;
+            let part = ProgressPart::new(progress, [0.8, 0.85]);
+            let solved = last(problem, &ends.best, options.robust, least, &part)?;
+            Ok((ends.tried, nearest(problem, solved, &ends.others, options.robust, &part)))
         };
         let (mut starts, mut solved) = found(&mut problem)?;
         if let Some(why) = problem.overlapping(&solved.minimum.parameters) {

@@ -41,6 +41,27 @@ pub(super) fn last(
     Ok(solved)
 }
 
+/// The nearest of the minima from `solved` and from `others`, which some of the rows did not tell apart.
+pub(super) fn nearest(
+    problem: &FitProblem,
+    mut solved: SolvedFit,
+    others: &[Vec<f64>],
+    robust: bool,
+    progress: &dyn Progress,
+) -> SolvedFit {
+    let huber = HUBER * solved.scale;
+    let cost = |solved: &SolvedFit| problem.cost_at(&solved.minimum.parameters, huber);
+    let is_late = problem.is_late(&solved.minimum.parameters, solved.scale);
+    for u in others {
+        let Some(other) = solve(problem, u, robust, ROUNDS, progress) else { continue };
+        let nearer = cost(&other).zip(cost(&solved)).is_some_and(|(other, own)| other < own);
+        if nearer && (is_late || !problem.is_late(&other.minimum.parameters, other.scale)) {
+            solved = other;
+        }
+    }
+    solved
+}
+
 /// The number of the contact radius at which an edge is pinned, where the points determine it worse than to a tenth, or
 /// allow one that is larger by as much: there is no line between the works of adhesion of both branches then.
 pub(super) fn unpinned(problem: &FitProblem, solved: &SolvedFit) -> Option<usize> {

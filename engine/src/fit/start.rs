@@ -45,6 +45,8 @@ const ONE: f64 = 0.01;
 const OTHER: f64 = 0.2;
 /// Points at a larger mean distance, in σ, are not reached, whatever starts end there.
 const REACHED: f64 = 2.0;
+/// Ends whose mean distance is larger by less than this factor are told apart by all rows only.
+const AS_NEAR: f64 = 1.02;
 
 /// A start that was run.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -172,7 +174,7 @@ impl FitProblem {
             None => self.clone(),
         };
         short.preset.material.adhesion = Adhesion::ShortRange;
-        let (found, _) = start(&short, true, robust, &ProgressPart::new(progress, [0.0, 0.5]))?;
+        let found = start(&short, true, robust, &ProgressPart::new(progress, [0.0, 0.5]))?.best;
         let Some(&j) = range.first() else { return Some(vec![own, found]) };
         let preset = short.preset_at(&found, Segment::Retraction)?;
         let (gamma, e) = (preset.material.work_of_adhesion, preset.material.effective_modulus);
@@ -212,8 +214,7 @@ impl FitProblem {
             still = still.holding(j, own[j])?;
         }
         still.preset.edge.rate = None;
-        let (found, _) = start(&still, true, robust, &ProgressPart::new(progress, [0.0, 0.3]))?;
-        let mut base = found;
+        let mut base = start(&still, true, robust, &ProgressPart::new(progress, [0.0, 0.3]))?.best;
         for &j in &free {
             base.insert(j, own[j]);
         }
@@ -266,7 +267,7 @@ impl FitProblem {
         const TIMES: usize = 4;
         let j = *self.index(|target| target.key() == START).first()?;
         let own = self.parameters[j].inner(self.parameters[j].start);
-        let (mut u, tried) = start(&self.holding(j, own)?, true, robust, progress)?;
+        let Ends { best: mut u, tried, .. } = start(&self.holding(j, own)?, true, robust, progress)?;
         u.insert(j, own);
         let run = self.thinned(RUN);
         let mut nearest = f64::INFINITY;
@@ -374,15 +375,22 @@ impl FitProblem {
     }
 }
 
+/// Where starts end.
+#[derive(Debug, Clone)]
+pub struct Ends {
+    /// The best one.
+    pub best: Vec<f64>,
+    /// Others that are as near to the points, which are not all of the rows.
+    pub others: Vec<Vec<f64>>,
+    /// Those that were run.
+    pub tried: Vec<Tried>,
+}
+
 /// The best start and those that were run; `progress` is told the share that is done.
-pub fn start(
-    problem: &FitProblem,
-    scan: bool,
-    robust: bool,
-    progress: &dyn Progress,
-) -> Option<(Vec<f64>, Vec<Tried>)> {
+pub fn start(problem: &FitProblem, scan: bool, robust: bool, progress: &dyn Progress) -> Option<Ends> {
     if scan && problem.loops && problem.pins() {
-        return problem.pinned(robust, progress);
+        let (best, tried) = problem.pinned(robust, progress)?;
+        return Some(Ends { best, others: Vec::new(), tried });
     }
     let ranked = ranked(problem, scan, robust, progress);
     best_of(&problem.thinned(RUN), ranked, (scan, robust), progress)
@@ -444,9 +452,10 @@ fn best_of(
     ranked: Vec<(f64, Vec<f64>)>,
     (scan, robust): (bool, bool),
     progress: &dyn Progress,
-) -> Option<(Vec<f64>, Vec<Tried>)> {
+) -> Option<Ends> {
     let mut best: Option<FitEnd> = None;
     let mut tried = Vec::new();
+    let mut ends: Vec<(f64, Vec<f64>)> = Vec::new();
     let count = ranked.len() as f64;
     let is_pulled = is_pulled(&run.preset);
     let mut from: Vec<Vec<f64>> = Vec::new();
@@ -455,6 +464,7 @@ fn best_of(
         progress.report(0.6 + 0.4 * i as f64 / count);
         let Some(end) = run.end_from(begun.clone(), robust, progress) else { continue };
         tried.push(run.tried(&end));
+        ends.push((end.distance, end.u.clone()));
         // Each step of a pull is one more pull, so an end near the points that is reached from two starts far from each other
         // is final.
         let apart = |u: &[f64], v: &[f64]| u.iter().zip(v).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
@@ -480,5 +490,16 @@ fn best_of(
             best = end;
         }
     }
-    Some((best.u, tried))
+    let is_other = |(distance, u): &(f64, Vec<f64>)| {
+        let apart = u.iter().zip(&best.u).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
+        *distance < AS_NEAR * best.distance && best.distance < REACHED && apart > ONE
+    };
+    let mut others: Vec<Vec<f64>> = Vec::new();
+    for (_, u) in ends.into_iter().filter(is_other) {
+        let is_new = |other: &Vec<f64>| other.iter().zip(&u).any(|(a, b)| (a - b).abs() > ONE);
+        if others.iter().all(is_new) {
+            others.push(u);
+        }
+    }
+    Some(Ends { best: best.u, others, tried })
 }

@@ -31,6 +31,8 @@ const TRIED: usize = 8;
 pub(crate) const SPARSE: usize = 20;
 const OF_FEW: f64 = 4.0;
 const OF_RANGE: f64 = 0.05;
+/// A later jump has at least this share of the height of the highest one.
+const OF_FIRST: f64 = 0.2;
 /// The number of rows behind the jump from which a slope can be told from their scatter.
 const MANY: usize = 20;
 
@@ -49,7 +51,23 @@ pub(super) fn jump(x: &[f64], force: &[f64]) -> Option<RowJump> {
     if n < 2 * FEWEST {
         return None;
     }
-    of_many(x, force).or_else(|| if n < SPARSE { of_few(force) } else { None })
+    let Some(mut found) = of_many(x, force) else { return if n < SPARSE { of_few(force) } else { None } };
+    // On waves the highest jump may not be the last one: the bodies are apart behind that.
+    let height = |at: usize, rest: &[f64]| {
+        let of = |part: &[f64]| median(part.to_vec()).unwrap_or(0.0);
+        (of(&rest[at..]) - rest[at - 1]).abs()
+    };
+    let first = height(found.at, force);
+    while n - found.at >= SPARSE {
+        let rest = &force[found.at..];
+        let Some(next) =
+            of_many(&x[found.at..], rest).filter(|next| height(next.at, rest) > OF_FIRST * first)
+        else {
+            break;
+        };
+        found = RowJump { at: found.at + next.at, ..next };
+    }
+    Some(found)
 }
 
 /// The jump among so few rows that a single one is as high as their noise seems to be.

@@ -4,6 +4,7 @@ use super::error::CurveReadError;
 use super::header::Header;
 use super::names::{named, squashed};
 use super::role::{ColumnPlace, ColumnRole, ColumnSpec, ColumnSpecError, Said, Segment, unit_of};
+use super::words::is_grouped;
 use crate::cells::ColumnHead;
 use crate::text::{quote, sanitize};
 use crate::units::Unit;
@@ -122,6 +123,10 @@ pub(super) fn wanted(
     if spec.0.is_empty() && cells == 2 && !has(&ColumnRole::is_force) && header.is_some_and(is_profile) {
         return Err(CurveReadError::Profile { line, names: known() });
     }
+    let heads = header.map_or(&[][..], |header| &header.heads);
+    if let Some((grouped, _)) = heads.iter().find(|(name, _)| is_grouped(name)) {
+        return Err(CurveReadError::NotNumber { line, text: quote(grouped) });
+    }
     for (is, missing) in [
         (&ColumnRole::is_force as &dyn Fn(ColumnRole) -> bool, "force or the deflection"),
         (&ColumnRole::is_way, "approach, the position or the contact radius"),
@@ -136,7 +141,6 @@ pub(super) fn wanted(
     }
     if wanted.is_empty() {
         // A row with a word in it is taken for a header.
-        let heads = header.map_or(&[][..], |header| &header.heads);
         let is_number = |(name, _): &&ColumnHead| name.parse::<f64>().is_ok();
         if let (true, Some((word, _))) =
             (heads.iter().any(|head| is_number(&head)), heads.iter().find(|head| !is_number(head)))

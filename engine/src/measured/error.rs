@@ -1,6 +1,7 @@
 //! What is wrong with the text of a measured curve.
 
 use super::role::{ColumnRole, ColumnSpecError};
+use super::words::is_grouped;
 use crate::cells::{CellFault, Faults, LineFault};
 use crate::text::NotText;
 use std::ops::RangeInclusive;
@@ -123,7 +124,10 @@ pub enum CurveReadError {
         names: String,
     },
     /// A row, in place of a header, in which not all cells are numbers.
-    #[error("line {line}: \"{text}\" is not a number, in a row of numbers")]
+    #[error(
+        "line {line}: \"{text}\" is not a number, in a row of numbers{}",
+        if is_grouped(text) { ": thousands must not be separated" } else { "" }
+    )]
     NotNumber {
         /// The row.
         line: usize,

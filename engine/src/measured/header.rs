@@ -3,7 +3,7 @@
 use super::lines::TextTable;
 use super::names::{named, squashed};
 use super::role::{Segment, unit_named};
-use super::words::{Words, count_known, is_units, keyed, unit_cells};
+use super::words::{Words, count_known, is_branch, is_gap, is_number, is_units, keyed, unit_cells};
 use crate::cells::{ColumnHead, Separator, heads};
 use std::collections::HashMap;
 
@@ -101,6 +101,14 @@ pub(super) fn headed(table: &TextTable, all: &[Words]) -> Option<Header> {
     for words in table.above.iter().rev().filter(|words| words.text.contains(char::is_alphanumeric)) {
         if !words.is_remark && is_units(words.text, table.separator) {
             units = unit_cells(words.text, table.separator);
+            continue;
+        }
+        // A row in which nothing was measured is no header.
+        let is_of_row = |name: &str| is_gap(name) || is_number(name) || is_branch(name);
+        let cells = table.separator.cells(words.text);
+        if cells.iter().any(|cell| !cell.is_empty() && is_gap(cell))
+            && cells.iter().all(|cell| is_of_row(cell))
+        {
             continue;
         }
         let mut found =

@@ -140,6 +140,17 @@ fn a_word_in_the_first_row_is_no_header() {
     let text = format!("delta [mm],force [mN]\n0.1,abc\n{}", "0.2,0.3\n".repeat(20));
     let error = parse(text.as_bytes(), &ColumnSpec::default()).unwrap_err().to_string();
     assert_eq!(error, "line 2: \"abc\" is not a number, in a row of numbers");
+    // Separated thousands are not another header above the rows below a thousand.
+    let text = format!("segment;force;delta\n{}retract;900,0;4.6\n", "retract;1.900,0;4.6\n".repeat(20));
+    let rows = format!("{text}{}", "retract;800,0;4.6\n".repeat(9));
+    let error = parse(rows.as_bytes(), &ColumnSpec::default()).unwrap_err().to_string();
+    assert!(
+        error.ends_with("\"1.900,0\" is not a number, in a row of numbers: thousands must not be separated"),
+        "{error}"
+    );
+    // A row in which nothing was measured is no header either.
+    let rows = (0..20).map(|i| format!("0.{i:02},0.3\n")).collect::<String>();
+    assert!(parse(format!("delta,force\nnan,nan\n{rows}").as_bytes(), &ColumnSpec::default()).is_ok());
 }
 
 /// Where δ is least it changes as little as the position of bodies apart, and noise moves the force.

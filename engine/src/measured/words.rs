@@ -54,6 +54,14 @@ pub(super) fn is_number(cell: &str) -> bool {
         && digits.bytes().any(|byte| byte.is_ascii_digit())
 }
 
+/// Whether a cell is a number whose thousands are separated.
+pub(super) fn is_grouped(cell: &str) -> bool {
+    let is_of_number = |c: char| c.is_ascii_digit() || matches!(c, '.' | ',' | '\'' | ' ' | '-' | '+');
+    let has_digits = |part: &str| !part.is_empty() && part.bytes().all(|byte| byte.is_ascii_digit());
+    let parts: Vec<&str> = cell.trim_start_matches(['-', '+']).split(['.', ',', '\'', ' ']).collect();
+    cell.chars().all(is_of_number) && parts.len() > 2 && parts.into_iter().all(has_digits)
+}
+
 /// Whether a cell is the name of a branch, spelt in letters.
 pub(super) fn is_branch(cell: &str) -> bool {
     cell.starts_with(char::is_alphabetic) && Segment::of(cell).is_some()

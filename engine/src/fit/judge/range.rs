@@ -75,7 +75,7 @@ pub(in super::super) fn unseen(
         let mut sharp = problem.holding(j, u[j])?;
         sharp.preset.material.adhesion = Adhesion::ShortRange;
         let found = start(&sharp, true, robust, progress)
-            .and_then(|(start, _)| solve(&sharp, &start, robust, ROUNDS, progress));
+            .and_then(|ends| solve(&sharp, &ends.best, robust, ROUNDS, progress));
         let s = scatter.contact.unwrap_or(solved.scale).max(1.0);
         match found {
             // There is nothing to compare with, so this makes no claim.

@@ -4,7 +4,7 @@
 //! A median of m rows is known to 1.2533 s/√m; a deviation beyond five of these is not chance.
 
 use super::super::path::PathPlace;
-use super::super::problem::{Datum, FitProblem, Target};
+use super::super::problem::{Datum, FitProblem};
 use super::super::pulled::is_pulled;
 use super::super::verdict::Reason;
 use super::{Evidence, ROUNDING};
@@ -14,6 +14,7 @@ use crate::measured::{Abscissa, Segment};
 use crate::text::counted;
 use crate::units::Quantity;
 use crate::units::number::{said, short};
+use nalgebra::DVector;
 
 /// The fewest rows that pull.
 const FEWEST: usize = 2;
@@ -25,24 +26,37 @@ const BEFORE: f64 = 3.0;
 
 /// The noise of the rows in contact in σ, and how far the first touch and a row may be off.
 fn margin(Evidence { problem, solved, scatter, inner }: Evidence) -> Option<[f64; 2]> {
+    /// The step of u for a derivative.
+    const STEP: f64 = 1e-4;
     let s = scatter.contact?.max(solved.scale).max(ROUNDING);
-    let offset = problem.parameters.iter().position(|parameter| parameter.target == Target::Offset);
-    let error = offset.zip(inner).map_or(0.0, |(j, inner)| {
-        s * inner[(j, j)].max(0.0).sqrt() * problem.parameters[j].scale.unwrap_or(0.0)
+    let u = &solved.minimum.parameters;
+    let slope = |j: usize| {
+        let mut beside = u.clone();
+        beside[j] += STEP;
+        Some((problem.touches_at(&beside)? - problem.touches_at(u)?) / STEP)
+    };
+    let error = inner.map_or(0.0, |inner| {
+        let slopes = DVector::from_fn(u.len(), |j, _| slope(j).unwrap_or(0.0));
+        s * (inner * &slopes).dot(&slopes).max(0.0).sqrt()
     });
     Some([s, BEFORE * (error + problem.sigma[0])])
 }
 
 impl FitProblem {
+    /// x of the first contact at `u`.
+    fn touches_at(&self, u: &[f64]) -> Option<f64> {
+        let range = self.preset_at(u, Segment::Approach)?.cohesion().map_or(0.0, |cohesion| cohesion.range);
+        Some(self.instrument_at(u).offset - range)
+    }
+
     /// How far beyond the first contact of the model at `u` the rows of an approach lie that are still apart, more than
     /// `margin` beyond it and far from its path; `s` is the noise in σ. The bodies cannot come nearer without touching.
     fn late(&self, u: &[f64], [s, margin]: [f64; 2]) -> Option<Vec<f64>> {
         if self.abscissa == Abscissa::Radius || is_pulled(&self.preset) {
             return None;
         }
-        let instrument = self.instrument_at(u);
-        let range = self.preset_at(u, Segment::Approach)?.cohesion().map_or(0.0, |cohesion| cohesion.range);
-        let beyond = |datum: &Datum| datum.point.x - (instrument.offset - range);
+        let (instrument, touches_at) = (self.instrument_at(u), self.touches_at(u)?);
+        let beyond = |datum: &Datum| datum.point.x - touches_at;
         let is_inside =
             |datum: &&Datum| datum.free && datum.segment == Segment::Approach && beyond(datum) > margin;
         let mut inside = self.data.iter().filter(is_inside).peekable();

@@ -190,3 +190,20 @@ fn rows_in_which_x_stands_still_at_the_turn_are_a_pause() {
     // A few rows at the turn are no pause.
     assert_eq!(held(3).pauses, 0);
 }
+
+#[test]
+fn on_waves_the_bodies_are_apart_behind_the_last_jump_and_not_the_highest() {
+    // An approach that jumps into contact, rises, and jumps again, by more.
+    let force = |i: usize| match i {
+        0..100 => 0.0,
+        100..130 => -16.0 + 0.4 * (i - 100) as f64,
+        _ => -28.0 + 0.5 * (i - 130) as f64,
+    };
+    let mut random = SplitMix64::new(4);
+    let rows = (0..260).map(|i| format!("{},{}\n", 0.1 * i as f64, force(i) + 0.2 * random.unit()));
+    let text = format!("approach,force\n{}", rows.collect::<String>());
+    let found = branches(&text).unwrap();
+    let [approach] = &found.list[..] else { panic!("{:?}", found.list) };
+    assert!(approach.free.len() >= 95 && approach.free.len() <= 100, "{}", approach.free.len());
+    assert!(approach.attached.len() >= 158, "{}", approach.attached.len());
+}
