@@ -405,7 +405,9 @@ impl Points {
         let held = |(segment, part): &mut (Segment, Vec<MeasuredPoint>)| {
             without_hold(part, *segment == Segment::Retraction)
         };
-        let pause: Vec<MeasuredPoint> = parts.iter_mut().flat_map(held).collect();
+        // A contact radius stands still while the edge is pinned, which is no pause.
+        let moves = self.abscissa != Abscissa::Radius;
+        let pause: Vec<MeasuredPoint> = parts.iter_mut().filter(|_| moves).flat_map(held).collect();
         if !pause.is_empty() {
             notes.push(format!(
                 "{} in which x stands still at the turn are left out as a pause",

@@ -149,7 +149,7 @@ fn a_word_in_the_first_row_is_no_header() {
         "{error}"
     );
     // A row in which nothing was measured is no header either.
-    let rows = (0..20).map(|i| format!("0.{i:02},0.3\n")).collect::<String>();
+    let rows = "0.1,0.3\n0.2,0.4\n".repeat(10);
     assert!(parse(format!("delta,force\nnan,nan\n{rows}").as_bytes(), &ColumnSpec::default()).is_ok());
 }
 
