@@ -423,7 +423,8 @@ class Together(_Fitted):
 
     @property
     def collapse(self) -> Dict[str, Any]:
-        """Whether the curves follow one law: ``collapses``, ``chi_squared``, ``values``, ``chance`` and ``sentence``."""
+        """Whether the curves follow one law: ``collapses``, None where a fit has not come to its end, ``chi_squared``,
+        ``values``, ``chance`` and ``sentence``."""
         return dict(self._said()["collapse"])
 
     @property

@@ -16,7 +16,7 @@ use super::determined::{Determined, White, determined, sandwich, words};
 use super::directed::branches_of;
 use super::fitted::Fitted;
 use super::intervals::noise;
-use super::least_squares::{Evaluated, LeastSquares, MinimizationSettings, Minimum, cost, minimize};
+use super::least_squares::{Ending, Evaluated, LeastSquares, MinimizationSettings, Minimum, cost, minimize};
 use super::options::{FitError, Options};
 use super::outcome::Fit;
 use super::prior::{Prior, with_derivatives, with_terms};
@@ -74,8 +74,8 @@ pub struct Collapse {
     pub values: usize,
     /// How likely such an increase is by chance if there is one law.
     pub chance: f64,
-    /// Whether there is one law.
-    pub collapses: bool,
+    /// Whether there is one law; null where a fit has not come to its end.
+    pub collapses: Option<bool>,
     /// The same in words.
     pub sentence: String,
 }
@@ -304,7 +304,7 @@ pub fn fit_together(
         let mut under_law = posed[run].clone();
         under_law.solved = solved;
         let mut fit = under_law.fit(what, scatter, false, progress).map_err(numbered(run))?;
-        if !collapse.collapses {
+        if collapse.collapses == Some(false) {
             fit.reasons.push(Reason::new("collapse", collapse.chi_squared, collapse.sentence.clone()));
             fit.verdict = fit.verdict.max(Verdict::DoesNotDescribe);
         }
@@ -470,19 +470,21 @@ fn collapse(joint: &Joint, together: &[SolvedFit], scatters: &[Scatter]) -> Coll
     let values = own.saturating_sub(joint.count);
     let below = (rows - own as f64).max(1.0);
     let chance = if values > 0 { beyond_f(chi_squared / values as f64, values as f64, below) } else { 1.0 };
-    let collapses = chance >= CHANCE;
+    let ended = |solved: &SolvedFit| solved.minimum.ending == Ending::Converged;
+    let all_ended = together.iter().all(ended) && joint.curves.iter().all(|curve| ended(curve.alone));
+    let collapses = all_ended.then_some(chance >= CHANCE);
     let much = format!(
         "one law for each of {} runs, with {values} more values, lowers chi squared by {}",
         joint.curves.len(),
         short(chi_squared, 3)
     );
-    let sentence = if collapses {
-        format!("the runs follow one law: {much}, as chance would (p = {})", short(chance, 2))
-    } else {
-        format!(
-            "the runs do NOT follow one law: {much}, which chance hardly would (p = {})",
-            short(chance, 2)
-        )
+    let p = short(chance, 2);
+    let sentence = match collapses {
+        Some(true) => format!("the runs follow one law: {much}, as chance would (p = {p})"),
+        Some(false) => {
+            format!("the runs do NOT follow one law: {much}, which chance hardly would (p = {p})")
+        }
+        None => "whether the runs follow one law is not known, as a fit has not come to its end".to_owned(),
     };
     Collapse { chi_squared, values, chance, collapses, sentence }
 }
