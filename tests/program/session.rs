@@ -248,8 +248,7 @@ fn branches_stay_and_can_be_gone_to() {
 #[test]
 fn the_other_branches_are_drawn_where_the_curve_is() {
     let mut session = Session::new("wavy-sphere");
-    session.all(&[Id::Step, Id::Step, Id::Step, Id::Undo, Id::Undo]).set("gap.amplitude", "0.002");
-    session.does(Command::Steps(2));
+    session.all(&[Id::Step, Id::Step, Id::Step, Id::Undo, Id::Undo]);
     let branch = |view| {
         let subject = Subject::of(&session.model).unwrap();
         let scale = subject.scale();
@@ -259,7 +258,7 @@ fn the_other_branches_are_drawn_where_the_curve_is() {
     };
     for view in [View::ForceApproach, View::ForceRadius] {
         let (lines, scale) = branch(view);
-        // From the state in which it branches off through those after it, although they solve another problem.
+        // From the state in which it branches off through those after it.
         let states = (1..=3).map(|number| {
             let node = session.model.history.node(number).unwrap();
             let state = node.state.in_units(node.setting.units());
@@ -268,6 +267,11 @@ fn the_other_branches_are_drawn_where_the_curve_is() {
         assert_eq!(lines.iter().map(|line| &line.points).collect::<Vec<_>>(), [&states.collect::<Vec<_>>()]);
     }
     assert!(branch(View::Unloading).0.is_empty());
+    // States of another problem would lie beside the curve without a name.
+    session.set("gap.amplitude", "0.002");
+    session.does(Command::Steps(2));
+    let subject = Subject::of(&session.model).unwrap();
+    assert!(subject.figure(View::ForceApproach).lines.iter().all(|line| line.role != Role::Branch));
 }
 
 /// Goes to the state before; false if there is none.

@@ -2,6 +2,7 @@
 //! edge comes to rest only where G has risen to γ. From there on it is pulled from equilibrium, as the model has it.
 
 use super::least_squares::LeastSquares;
+use super::options::FitError;
 use super::problem::{FitProblem, START, Target};
 use super::pulled::{is_pulled, rest_behind};
 use super::rates::rate;
@@ -11,13 +12,14 @@ use crate::measured::{Abscissa, Branches, Instrument, Segment};
 use crate::problem::Control;
 use crate::units::Quantity;
 use crate::units::number::{said, short};
+use std::collections::BTreeSet;
 
 /// The edge closes at most this much longer than the fitted values say, as a share of the way behind the turn.
 const MARGIN: f64 = 1.1;
 /// Rounds in which the values and the rows that are left out come to agree.
 const ROUNDS: usize = 2;
 /// Values that differ by more than so many errors contradict each other.
-const DIFFERENT: f64 = 1.0;
+const DIFFERENT: f64 = 2.0;
 /// So many rows at least are fitted for each parameter.
 const PER_PARAMETER: usize = 3;
 
@@ -25,19 +27,22 @@ const PER_PARAMETER: usize = 3;
 pub(super) struct Approached {
     /// The rate of the control on the way up, and how long it was held at the turn.
     way: [f64; 2],
-    /// Whether rows of the file show it. Otherwise it is taken to be as fast as the retraction.
+    /// Whether rows of the file show its rate. Otherwise it is taken to be as fast as the retraction.
     is_seen: bool,
 }
 
 impl Approached {
     /// The approach before the points of `problem`; `None` where these are not those of a pull from a turn.
-    pub(super) fn of(problem: &FitProblem, branches: &Branches) -> Option<Self> {
+    ///
+    /// Without an approach in the file, a retraction of which rows are left out on request (`is_cut`) has none either.
+    pub(super) fn of(problem: &FitProblem, branches: &Branches, is_cut: bool) -> Option<Self> {
         if !is_pulled(&problem.preset) || branches.abscissa == Abscissa::Radius {
             return None;
         }
         let of = |segment: Segment| {
-            let list = branches.list.iter().filter(move |branch| branch.segment == segment);
-            let mut points: Vec<&MeasuredPoint> = list.flat_map(|branch| &branch.attached).collect();
+            // Of several loops, the first one.
+            let branch = branches.list.iter().find(|branch| branch.segment == segment);
+            let mut points: Vec<&MeasuredPoint> = branch.iter().flat_map(|branch| &branch.attached).collect();
             points.sort_by_key(|point| point.at);
             points
         };
@@ -53,7 +58,8 @@ impl Approached {
             let even = || median(step).map(|step| (first.at - last.at) as f64 * step / rate);
             if pause.is_finite() { pause } else { even().unwrap_or(0.0) }
         });
-        Some(Self { way: [rate, hold.max(0.0)], is_seen: !up.is_empty() })
+        let is_seen = measured.is_some();
+        (is_seen || !is_cut).then(|| Self { way: [rate, hold.max(0.0)], is_seen })
     }
 
     /// `problem` without the rows in which the edge still closes at the values `u`; `None` where there are none.
@@ -71,7 +77,7 @@ impl Approached {
             .then_some(left)
     }
 
-    /// `problem` at the values `u`, without the rows in which the edge still closes if the file has the approach, or if these
+    /// `problem` at the values `u`, without the rows in which the edge still closes if the file has the approach with its rate, or if these
     /// rows contradict an edge that rests.
     pub(super) fn seen(&self, problem: FitProblem, u: &[f64]) -> FitProblem {
         let left =
@@ -86,25 +92,21 @@ impl Approached {
         whole: FitProblem,
         from: SolvedFit,
         notes: &mut Vec<String>,
-        solve: &impl Fn(&mut FitProblem, &[f64]) -> Option<SolvedFit>,
+        solve: impl Fn(&mut FitProblem, &[f64]) -> Result<SolvedFit, FitError>,
     ) -> (FitProblem, SolvedFit, Option<String>) {
         let mut found: Option<(FitProblem, SolvedFit)> = None;
         for _ in 0..ROUNDS {
             let u = &found.as_ref().map_or(&from, |(_, solved)| solved).minimum.parameters;
             let Some(mut problem) = self.without(&whole, u) else { break };
-            let Some(solved) = solve(&mut problem, u) else { break };
+            let Ok(solved) = solve(&mut problem, u) else { break };
             found = Some((problem, solved));
         }
         let Some((problem, solved)) = found else { return (whole, from, None) };
         let rows = whole.data.len() - problem.data.len();
         let both = [&from, &solved].map(|solved| &*solved.minimum.parameters);
         let why = if self.is_seen {
-            let held_by_force = whole.preset.path.control == Control::Force;
-            let quantity = if held_by_force { Quantity::Force } else { Quantity::Speed };
-            format!(
-                "after an approach at {} the edge still closes there",
-                said(&whole.preset.units, quantity, self.way[0])
-            )
+            let rate = said(&whole.preset.units, Quantity::Speed, self.way[0]);
+            format!("after an approach at {rate} the edge still closes there")
         } else if contradicts(&whole, &problem, both, solved.scale) {
             "they contradict an edge that rests at the turn, and may be those of one that still closes after a fast approach".to_owned()
         } else {
@@ -116,18 +118,24 @@ impl Approached {
     }
 }
 
-/// Whether the rows of `whole` that are not in `left` contradict what is fitted to the others: by how much their residuals
-/// lower χ², with σ times `scale`, where the values are those of a fit with them and of one without.
+/// Whether the rows of `whole` that are not in `left` contradict an edge that rests, σ being `scale` times as large: by how much
+/// they raise χ², from a fit without them to one with them, or by the mean of a half of their residuals.
 fn contradicts(whole: &FitProblem, left: &FitProblem, [with, without]: [&[f64]; 2], scale: f64) -> bool {
-    /// The sum of the squares of so many residuals exceeds their number by at most so many standard deviations.
-    const SURE: f64 = 3.0;
+    /// The standard deviations that are not chance.
+    const SURE: f64 = 5.0;
     let mut kept = whole.clone();
     kept.data.clone_from(&left.data);
-    let huber = f64::INFINITY;
-    let costs = whole.cost_at(with, huber).zip(kept.cost_at(without, huber));
+    let costs = whole.cost_at(with, f64::INFINITY).zip(kept.cost_at(without, f64::INFINITY));
     let rows = ((whole.data.len() - left.data.len()) * whole.per_point()) as f64;
-    costs
-        .is_some_and(|(all, others)| 2.0 * (all - others) / scale.powi(2) > rows + SURE * (2.0 * rows).sqrt())
+    let raises =
+        |(all, others): (f64, f64)| 2.0 * (all - others) / scale.powi(2) > rows + SURE * (2.0 * rows).sqrt();
+    let is_kept: BTreeSet<usize> = left.data.iter().map(|datum| datum.point.at).collect();
+    let off: Vec<f64> = whole.residuals(with).map_or_else(Vec::new, |residuals| {
+        let first = whole.data.iter().zip(residuals.iter().step_by(whole.per_point()));
+        first.filter(|(datum, _)| !is_kept.contains(&datum.point.at)).map(|(_, r)| r / scale).collect()
+    });
+    let is_off = |half: &[f64]| half.iter().sum::<f64>().abs() > SURE * (half.len() as f64).sqrt();
+    costs.is_some_and(raises) || off.chunks(off.len().div_ceil(2).max(1)).any(is_off)
 }
 
 /// That the first rows, without which the value `key` differs by so many errors, may not be those of an edge that rests.
@@ -138,7 +146,7 @@ fn doubt(left: &FitProblem, rows: usize, key: &str, by: f64) -> String {
     let range = if left.turned[0] { format!("{}..", text(-to)) } else { format!("..{}", text(to)) };
     format!(
         "the edge is taken to rest where the retraction begins. After an approach as fast as the retraction it would still close in \
-         the first {rows} rows, without which {key} differs by {} of its errors: leave them out with --range x={range}",
+         the first {rows} rows, without which {key} differs by {} of its errors: leave them out with --range \"x={range}\"",
         short(by, 2)
     )
 }

@@ -82,11 +82,12 @@ impl<'a> Posed<'a> {
         let of_both = branches.abscissa == Abscissa::Radius && branches.noise.from[0] == Origin::Assumed;
         let least = of_neighbours
             .then_some([if of_both { problem.sigma[0] } else { f64::INFINITY }, FLOOR * branches.ranges[1]]);
+        let part = ProgressPart::new(progress, [0.8, 0.85]);
+        let solve = |problem: &mut FitProblem, u: &[f64]| last(problem, u, options.robust, least, &part);
         let found = |problem: &mut FitProblem| -> Result<_, FitError> {
             let ends = start(problem, options.scan, options.robust, &ProgressPart::new(progress, [0.0, 0.8]))
                 .ok_or(FitError::NoStart)?;
-            let part = ProgressPart::new(progress, [0.8, 0.85]);
-            let solved = last(problem, &ends.best, options.robust, least, &part)?;
+            let solved = solve(problem, &ends.best)?;
             Ok((ends.tried, nearest(problem, solved, &ends.others, options.robust, &part)))
         };
         let (mut starts, mut solved) = found(&mut problem)?;
@@ -94,37 +95,9 @@ impl<'a> Posed<'a> {
             problem = problem.without_loading(why, &mut notes)?;
             (starts, solved) = found(&mut problem)?;
         }
-        if problem.pins() {
-            let progress = ProgressPart::new(progress, [0.8, 0.85]);
-            (problem, solved) = pinned_again(problem, solved, |problem, u| {
-                last(problem, u, options.robust, least, &progress)
-            });
-        }
-        if let Some(j) = unpinned(&problem, &solved) {
-            let mut u = solved.minimum.parameters;
-            problem = problem.holding(j, u.remove(j)).ok_or(FitError::NoStart)?;
-            solved =
-                last(&mut problem, &u, options.robust, least, &ProgressPart::new(progress, [0.8, 0.85]))?;
-            notes.push("no rows show that the edge is pinned before it recedes".to_owned());
-        }
-        let mut doubt = None;
-        if let Some(approached) = Approached::of(&problem, branches) {
-            let progress = ProgressPart::new(progress, [0.8, 0.85]);
-            let solve =
-                |problem: &mut FitProblem, u: &[f64]| last(problem, u, options.robust, least, &progress).ok();
-            (problem, solved, doubt) = approached.settled(problem, solved, &mut notes, &solve);
-        }
-        if let Some(j) = unseen_start(&problem, &solved) {
-            (problem, solved) = held_start(&problem, solved, j, |problem, u| {
-                last(problem, u, options.robust, least, &ProgressPart::new(progress, [0.8, 0.85]))
-            })?;
-            if let Start::ContactRadius(radius) = problem.preset.path.start {
-                let at = said(&preset.units, Quantity::Length, radius);
-                notes.push(format!(
-                    "the points do not show at which contact radius the edge started: it is held at {at}"
-                ));
-            }
-        }
+        let doubt;
+        let is_cut = options.asked.x.is_some();
+        (problem, solved, doubt) = of_start(problem, solved, (branches, is_cut), &mut notes, &solve)?;
         let has_snaps =
             |paths: &Paths| [Segment::Approach, Segment::Retraction].iter().any(|of| paths.of(*of).snaps > 0);
         if problem.paths(&solved.minimum.parameters).is_some_and(|paths| has_snaps(&paths)) {
@@ -238,6 +211,39 @@ fn ended(ending: Ending, unseen: bool, progress: &dyn Progress) -> Ending {
 /// The rows of a matrix.
 fn rows_of(matrix: &DMatrix<f64>) -> Vec<Vec<f64>> {
     matrix.row_iter().map(|row| row.iter().copied().collect()).collect()
+}
+
+/// Solves again what depends on where the edge is pinned, or where a pull starts; with what is doubtful about that.
+fn of_start(
+    mut problem: FitProblem,
+    mut solved: SolvedFit,
+    (branches, is_cut): (&Branches, bool),
+    notes: &mut Vec<String>,
+    solve: &impl Fn(&mut FitProblem, &[f64]) -> Result<SolvedFit, FitError>,
+) -> Result<(FitProblem, SolvedFit, Option<String>), FitError> {
+    if problem.pins() {
+        (problem, solved) = pinned_again(problem, solved, solve);
+    }
+    if let Some(j) = unpinned(&problem, &solved) {
+        let mut u = solved.minimum.parameters;
+        problem = problem.holding(j, u.remove(j)).ok_or(FitError::NoStart)?;
+        solved = solve(&mut problem, &u)?;
+        notes.push("no rows show that the edge is pinned before it recedes".to_owned());
+    }
+    let mut doubt = None;
+    if let Some(approached) = Approached::of(&problem, branches, is_cut) {
+        (problem, solved, doubt) = approached.settled(problem, solved, notes, solve);
+    }
+    if let Some(j) = unseen_start(&problem, &solved) {
+        (problem, solved) = held_start(&problem, solved, j, solve)?;
+        if let Start::ContactRadius(radius) = problem.preset.path.start {
+            let at = said(&problem.preset.units, Quantity::Length, radius);
+            notes.push(format!(
+                "the points do not show at which contact radius the edge started: it is held at {at}"
+            ));
+        }
+    }
+    Ok((problem, solved, doubt))
 }
 
 /// The problem with the contact radius `j`, at which a pull starts, held, and its minimum as `solve` finds it. The edge starts

@@ -267,7 +267,7 @@ impl FitProblem {
         const TIMES: usize = 4;
         let j = *self.index(|target| target.key() == START).first()?;
         let own = self.parameters[j].inner(self.parameters[j].start);
-        let Ends { best: mut u, tried, .. } = start(&self.holding(j, own)?, true, robust, progress)?;
+        let StartEnds { best: mut u, tried, .. } = start(&self.holding(j, own)?, true, robust, progress)?;
         u.insert(j, own);
         let run = self.thinned(RUN);
         let mut nearest = f64::INFINITY;
@@ -377,7 +377,7 @@ impl FitProblem {
 
 /// Where starts end.
 #[derive(Debug, Clone)]
-pub struct Ends {
+pub struct StartEnds {
     /// The best one.
     pub best: Vec<f64>,
     /// Others that are as near to the points, which are not all of the rows.
@@ -387,10 +387,10 @@ pub struct Ends {
 }
 
 /// The best start and those that were run; `progress` is told the share that is done.
-pub fn start(problem: &FitProblem, scan: bool, robust: bool, progress: &dyn Progress) -> Option<Ends> {
+pub fn start(problem: &FitProblem, scan: bool, robust: bool, progress: &dyn Progress) -> Option<StartEnds> {
     if scan && problem.loops && problem.pins() {
         let (best, tried) = problem.pinned(robust, progress)?;
-        return Some(Ends { best, others: Vec::new(), tried });
+        return Some(StartEnds { best, others: Vec::new(), tried });
     }
     let ranked = ranked(problem, scan, robust, progress);
     best_of(&problem.thinned(RUN), ranked, (scan, robust), progress)
@@ -452,7 +452,7 @@ fn best_of(
     ranked: Vec<(f64, Vec<f64>)>,
     (scan, robust): (bool, bool),
     progress: &dyn Progress,
-) -> Option<Ends> {
+) -> Option<StartEnds> {
     let mut best: Option<FitEnd> = None;
     let mut tried = Vec::new();
     let mut ends: Vec<(f64, Vec<f64>)> = Vec::new();
@@ -501,5 +501,5 @@ fn best_of(
             others.push(u);
         }
     }
-    Some(Ends { best: best.u, others, tried })
+    Some(StartEnds { best: best.u, others, tried })
 }

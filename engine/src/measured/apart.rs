@@ -31,8 +31,6 @@ const TRIED: usize = 8;
 pub(crate) const SPARSE: usize = 20;
 const OF_FEW: f64 = 4.0;
 const OF_RANGE: f64 = 0.05;
-/// A later jump has at least this share of the height of the highest one.
-const OF_FIRST: f64 = 0.2;
 /// The number of rows behind the jump from which a slope can be told from their scatter.
 const MANY: usize = 20;
 
@@ -53,21 +51,27 @@ pub(super) fn jump(x: &[f64], force: &[f64]) -> Option<RowJump> {
     }
     let Some(mut found) = of_many(x, force) else { return if n < SPARSE { of_few(force) } else { None } };
     // On waves the highest jump may not be the last one: the bodies are apart behind that.
-    let height = |at: usize, rest: &[f64]| {
-        let of = |part: &[f64]| median(part.to_vec()).unwrap_or(0.0);
-        (of(&rest[at..]) - rest[at - 1]).abs()
-    };
-    let first = height(found.at, force);
     while n - found.at >= SPARSE {
-        let rest = &force[found.at..];
-        let Some(next) =
-            of_many(&x[found.at..], rest).filter(|next| height(next.at, rest) > OF_FIRST * first)
-        else {
-            break;
-        };
-        found = RowJump { at: found.at + next.at, ..next };
+        let next = of_many(&x[found.at..], &force[found.at..])
+            .map(|next| RowJump { at: found.at + next.at, ..next });
+        let Some(next) = next.filter(|next| is_contact(x, force, [found.at, next.at])) else { break };
+        found = next;
     }
     Some(found)
+}
+
+/// Whether the bodies are in contact between two jumps: the force has a slope as before the first of them. Bridges between
+/// the bodies and steps of the instrument have none.
+fn is_contact(x: &[f64], force: &[f64], [from, to]: [usize; 2]) -> bool {
+    /// The fewest rows in between, and the share of the slope.
+    const BETWEEN: usize = 8;
+    const OF_SLOPE: f64 = 0.4;
+    let slope = |from: usize, to: usize| {
+        let half = usize::midpoint(from, to);
+        let of = |values: &[f64], from: usize, to: usize| median(values[from..to].to_vec()).unwrap_or(0.0);
+        (of(force, from, half) - of(force, half, to)) / (of(x, from, half) - of(x, half, to))
+    };
+    to - from >= BETWEEN && slope(from, to) > OF_SLOPE * slope(0, from)
 }
 
 /// The jump among so few rows that a single one is as high as their noise seems to be.

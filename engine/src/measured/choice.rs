@@ -4,7 +4,7 @@ use super::error::CurveReadError;
 use super::header::Header;
 use super::names::{named, squashed};
 use super::role::{ColumnPlace, ColumnRole, ColumnSpec, ColumnSpecError, Said, Segment, unit_of};
-use super::words::is_grouped;
+use super::words::{is_grouped, is_number};
 use crate::cells::ColumnHead;
 use crate::text::{quote, sanitize};
 use crate::units::Unit;
@@ -124,7 +124,10 @@ pub(super) fn wanted(
         return Err(CurveReadError::Profile { line, names: known() });
     }
     let heads = header.map_or(&[][..], |header| &header.heads);
-    if let Some((grouped, _)) = heads.iter().find(|(name, _)| is_grouped(name)) {
+    let numbers = heads.iter().filter(|(name, _)| is_grouped(name) || is_number(name)).count();
+    let grouped =
+        heads.iter().find(|(name, _)| is_grouped(name)).filter(|_| numbers > 1 && spec.0.is_empty());
+    if let Some((grouped, _)) = grouped {
         return Err(CurveReadError::NotNumber { line, text: quote(grouped) });
     }
     for (is, missing) in [

@@ -106,7 +106,7 @@ pub(super) fn headed(table: &TextTable, all: &[Words]) -> Option<Header> {
         // A row in which nothing was measured is no header.
         let is_of_row = |name: &str| is_gap(name) || is_number(name) || is_branch(name);
         let cells = table.separator.cells(words.text);
-        if cells.iter().any(|cell| !cell.is_empty() && is_gap(cell))
+        if cells.iter().any(|cell| cell.contains(char::is_alphanumeric) && is_gap(cell))
             && cells.iter().all(|cell| is_of_row(cell))
         {
             continue;

@@ -13,28 +13,40 @@ const NOISE: f64 = 10.0;
 const FEWEST: usize = 5;
 const IN_RUNS: f64 = 0.9;
 
-/// Takes the rows out of `part` in which x stands still at the turn: those at its beginning if it is a retraction, at its end
-/// if it is an approach. One of them stays.
+/// Takes the rows out of `part` in which x stands still at its largest value: those at its beginning if it is a retraction, at
+/// its end if it is an approach. One of them stays.
 pub(super) fn without_hold(part: &mut Vec<MeasuredPoint>, is_retraction: bool) -> Vec<MeasuredPoint> {
-    /// x stands still where it changes by less than this share of a usual step.
+    /// x stands still where it changes by less than this share of the steps that follow.
     const STILL: f64 = 0.5;
+    /// The number of steps that follow.
+    const BESIDE: usize = 5;
+    /// Behind a soft spring the approach hardly changes while the force does. During a hold that changes by at most this share
+    /// of its range.
+    const RELAXES: f64 = 0.3;
     /// Steps of a converter make x stand still everywhere: a hold has this many times as many rows.
-    const LONGER: usize = 4;
-    let steps = part.windows(2).map(|pair| (pair[1].x - pair[0].x).abs()).filter(|step| *step > 0.0);
-    let steps: Vec<f64> = steps.collect();
-    let moving = steps.len();
-    let Some(step) = median(steps) else { return Vec::new() };
-    let stands = |turn: &MeasuredPoint, point: &MeasuredPoint| (point.x - turn.x).abs() <= STILL * step;
-    let count = match (&part[..], is_retraction) {
-        ([turn, rest @ ..], true) => rest.iter().take_while(|point| stands(turn, point)).count(),
-        ([rest @ .., turn], false) => rest.iter().rev().take_while(|point| stands(turn, point)).count(),
-        ([], _) => 0,
-    };
-    let usual = (part.len() - count) / moving.max(1);
-    if count < FEWEST.max(LONGER * usual) || part.len() - count < FEWEST {
+    const LONGER: f64 = 4.0;
+    let from_turn = |i: usize| part[if is_retraction { i } else { part.len() - 1 - i }].x;
+    let Some(last) = part.len().checked_sub(BESIDE + FEWEST) else { return Vec::new() };
+    let step = |i: usize| (from_turn(i + 1) - from_turn(i)).abs();
+    let (turn, mut off, mut count) = (from_turn(0), 0.0_f64, 0);
+    for i in 1..last {
+        off = off.max((from_turn(i) - turn).abs());
+        let beside = median((i..i + BESIDE).map(step).collect()).unwrap_or(0.0);
+        if beside > 0.0 && off <= STILL * beside {
+            count = i;
+        }
+    }
+    let moving = (count..part.len() - 1).filter(|i| step(*i) > 0.0).count();
+    let usual = (part.len() - count) as f64 / moving.max(1) as f64;
+    let is_largest = part.iter().all(|point| point.x <= turn + STILL * step(count));
+    if count < FEWEST || (count as f64) < LONGER * usual || !is_largest {
         return Vec::new();
     }
     let first = if is_retraction { 0 } else { part.len() - count };
+    let forces = |rows: &[MeasuredPoint]| range(rows.iter().map(|point| point.force));
+    if forces(&part[first..first + count]) > RELAXES * forces(part) {
+        return Vec::new();
+    }
     part.drain(first..first + count).collect()
 }
 

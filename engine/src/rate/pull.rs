@@ -384,14 +384,15 @@ fn peaks(record: &Record, rise: f64) -> Vec<Moment> {
     let first = record.least.first().map_or(0.0, |least| least.at.time);
     let before = record.moments.iter().take_while(|moment| moment.time <= first);
     let mut highest = before.map(|moment| moment.force).fold(f64::NEG_INFINITY, f64::max);
-    // What dips while the edge closes is no tension.
-    for LeastForce { at, then } in record.least.iter().filter(|least| least.at.speed >= 0.0) {
+    for LeastForce { at, then } in &record.least {
+        // What dips while the edge closes is no tension.
+        let is_tension = at.speed >= 0.0;
         candidate = match candidate {
-            None if highest - at.force <= rise => {
+            None if !is_tension || highest - at.force <= rise => {
                 highest = highest.max(*then);
                 continue;
             }
-            Some(known) if known.force < at.force => Some(known),
+            Some(known) if !is_tension || known.force < at.force => Some(known),
             _ => Some(*at),
         };
         if let Some(lowest) = candidate.filter(|lowest| then - lowest.force > rise) {
