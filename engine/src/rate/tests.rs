@@ -346,3 +346,21 @@ fn snaps_after_turns_begin_where_those_of_a_whole_pull_do() {
         }
     }
 }
+
+#[test]
+fn what_dips_while_the_edge_closes_is_no_tension() {
+    let table = wavy();
+    let from = |start: f64| Puller { start, ..puller(&table, 0.5, Control::Displacement) };
+    let away = Part::Apart { rate: 0.002 };
+    let programme = [Part::Ramp { to: 0.2, rate: 0.02 }, Part::Hold { time: 100.0 }, away];
+    let pressed = from(0.3).pull(&programme, &Unwatched).unwrap();
+    // The same as of a pull from rest at the radius that it was pressed to.
+    let [radius, _] = pressed.closed_to.unwrap();
+    let rested = from(radius).pull(&[away], &Unwatched).unwrap();
+    let forces = |pull: &Pull| pull.tension_peaks.iter().map(|peak| peak.force).collect::<Vec<f64>>();
+    let [pressed, rested] = [forces(&pressed), forces(&rested)];
+    assert!(pressed.len() == rested.len() && rested.len() > 8, "{pressed:?} {rested:?}");
+    for (a, b) in pressed.iter().zip(&rested) {
+        assert!((a - b).abs() < 1e-6, "{pressed:?} {rested:?}");
+    }
+}
