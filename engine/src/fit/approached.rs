@@ -3,10 +3,12 @@
 
 use super::least_squares::LeastSquares;
 use super::options::FitError;
+use super::pose::PER_PARAMETER;
 use super::problem::{FitProblem, START, Target};
 use super::pulled::{is_pulled, rest_behind};
 use super::rates::rate;
 use super::solve::SolvedFit;
+use crate::measured::asked::ValueRange;
 use crate::measured::branches::{MeasuredPoint, median};
 use crate::measured::{Abscissa, Branches, Instrument, Segment};
 use crate::problem::Control;
@@ -20,8 +22,13 @@ const MARGIN: f64 = 1.1;
 const ROUNDS: usize = 2;
 /// Values that differ by more than so many errors contradict each other.
 const DIFFERENT: f64 = 2.0;
-/// So many rows at least are fitted for each parameter.
-const PER_PARAMETER: usize = 3;
+
+/// The doubt about a fit whose approach cannot be followed.
+const NOT_FOLLOWED: &str = "after an approach as fast as in this file the edge may still close in the first rows of the \
+     retraction; the approach cannot be followed at the fitted values, so these rows are not left out";
+
+/// That an approach cannot be followed, as where the bodies touch ahead of the edge.
+struct NotFollowed;
 
 /// The approach before a pull.
 pub(super) struct Approached {
@@ -29,13 +36,14 @@ pub(super) struct Approached {
     way: [f64; 2],
     /// Whether rows of the file show its rate. Otherwise it is taken to be as fast as the retraction.
     is_seen: bool,
+    /// Whether the user leaves out the rows near the turn.
+    is_cut: bool,
 }
 
 impl Approached {
-    /// The approach before the points of `problem`; `None` where these are not those of a pull from a turn.
-    ///
-    /// Without an approach in the file, a retraction of which rows are left out on request (`is_cut`) has none either.
-    pub(super) fn of(problem: &FitProblem, branches: &Branches, is_cut: bool) -> Option<Self> {
+    /// The approach before the points of `problem`, of which those within `range` of x in the file are used; `None` where
+    /// these are not those of a pull from a turn.
+    pub(super) fn of(problem: &FitProblem, branches: &Branches, range: Option<ValueRange>) -> Option<Self> {
         if !is_pulled(&problem.preset) || branches.abscissa == Abscissa::Radius {
             return None;
         }
@@ -58,35 +66,36 @@ impl Approached {
             let even = || median(step).map(|step| (first.at - last.at) as f64 * step / rate);
             if pause.is_finite() { pause } else { even().unwrap_or(0.0) }
         });
-        let is_seen = measured.is_some();
-        (is_seen || !is_cut).then(|| Self { way: [rate, hold.max(0.0)], is_seen })
+        let is_cut =
+            range.is_some_and(|range| if branches.turned[0] { range.lo } else { range.hi }.is_finite());
+        Some(Self { way: [rate, hold.max(0.0)], is_seen: measured.is_some(), is_cut })
     }
 
-    /// `problem` without the rows in which the edge still closes at the values `u`; `None` where there are none.
-    fn without(&self, problem: &FitProblem, u: &[f64]) -> Option<FitProblem> {
-        let preset = problem.preset_at(u, Segment::Retraction)?;
+    /// `problem` without the rows in which the edge still closes at the values `u`. `None` where there are none, or where too
+    /// few others are left; an error where the approach cannot be followed.
+    fn without(&self, problem: &FitProblem, u: &[f64]) -> Result<Option<FitProblem>, NotFollowed> {
+        let preset = problem.preset_at(u, Segment::Retraction).ok_or(NotFollowed)?;
         let at = problem.instrument_at(u);
         let value = |place| driven(problem.abscissa, preset.path.control, &at, place);
         let turn = value(problem.reach.turn);
-        let rest = rest_behind(&preset, problem.reach.length, turn, self.way)?;
+        let rest = rest_behind(&preset, problem.reach.length, turn, self.way).ok_or(NotFollowed)?;
         let last = turn - MARGIN * (turn - rest);
         let mut left = problem.clone();
         left.data.retain(|datum| datum.free || value([datum.point.x, datum.point.force]) <= last);
         let rows = left.data.iter().filter(|datum| !datum.free).count();
-        (left.data.len() < problem.data.len() && rows >= PER_PARAMETER * problem.parameters.len())
-            .then_some(left)
+        let is_enough = rows >= PER_PARAMETER * problem.parameters.len();
+        Ok(Some(left).filter(|left| left.data.len() < problem.data.len() && is_enough))
     }
 
-    /// `problem` at the values `u`, without the rows in which the edge still closes if the file has the approach with its rate, or if these
-    /// rows contradict an edge that rests.
+    /// `problem` at the values `u`, without the rows that a fit leaves out.
     pub(super) fn seen(&self, problem: FitProblem, u: &[f64]) -> FitProblem {
-        let left =
-            self.without(&problem, u).filter(|left| self.is_seen || contradicts(&problem, left, [u, u], 1.0));
+        let left = self.without(&problem, u).ok().flatten();
+        let left = left.filter(|left| self.is_seen || contradicts(&problem, left, [u, u], 1.0));
         left.unwrap_or(problem)
     }
 
-    /// The fit without the rows in which the edge still closes, if the file has the approach, or if these rows contradict an
-    /// edge that rests. Otherwise the whole fit, with what is doubtful about it where these rows matter.
+    /// The fit without the rows in which the edge still closes, if the file shows the rate of the approach, or if these rows
+    /// contradict an edge that rests. Otherwise the whole fit, with what is doubtful about it.
     pub(super) fn settled(
         &self,
         whole: FitProblem,
@@ -97,7 +106,13 @@ impl Approached {
         let mut found: Option<(FitProblem, SolvedFit)> = None;
         for _ in 0..ROUNDS {
             let u = &found.as_ref().map_or(&from, |(_, solved)| solved).minimum.parameters;
-            let Some(mut problem) = self.without(&whole, u) else { break };
+            let mut problem = match self.without(&whole, u) {
+                Ok(Some(problem)) => problem,
+                Err(NotFollowed) if self.is_seen && found.is_none() => {
+                    return (whole, from, Some(NOT_FOLLOWED.to_owned()));
+                }
+                _ => break,
+            };
             let Ok(solved) = solve(&mut problem, u) else { break };
             found = Some((problem, solved));
         }
@@ -108,10 +123,11 @@ impl Approached {
             let rate = said(&whole.preset.units, Quantity::Speed, self.way[0]);
             format!("after an approach at {rate} the edge still closes there")
         } else if contradicts(&whole, &problem, both, solved.scale) {
-            "they contradict an edge that rests at the turn, and may be those of one that still closes after a fast approach".to_owned()
+            "they contradict an edge that rests at the turn; after a fast approach it would still close there"
+                .to_owned()
         } else {
-            let doubt = moved(&from, &solved, &problem).map(|(key, by)| doubt(&problem, rows, &key, by));
-            return (whole, from, doubt);
+            let moved = moved(&from, &solved, &problem).filter(|_| !self.is_cut);
+            return (whole, from, moved.map(|(key, by)| doubt(&problem, rows, &key, by)));
         };
         notes.push(format!("the first {rows} rows of the retraction are left out: {why}"));
         (problem, solved, None)
@@ -163,12 +179,8 @@ fn driven(abscissa: Abscissa, control: Control, at: &Instrument, [x, force]: [f6
 
 /// The value that differs most between two fits, by how many errors of the second one; `None` where none differs.
 fn moved(one: &SolvedFit, two: &SolvedFit, problem: &FitProblem) -> Option<(String, f64)> {
-    let jacobian = &two.minimum.at.jacobian;
-    let covariance = jacobian.tr_mul(jacobian).try_inverse()?;
-    let by = |j: usize| {
-        let error = two.scale * covariance[(j, j)].sqrt();
-        (two.minimum.parameters[j] - one.minimum.parameters[j]).abs() / error
-    };
+    let errors = two.errors()?;
+    let by = |j: usize| (two.minimum.parameters[j] - one.minimum.parameters[j]).abs() / errors[j];
     // Where the edge starts is another place in either fit.
     let of_start = Target::Key(START.to_owned());
     let others = problem.parameters.iter().enumerate().filter(|(_, parameter)| parameter.target != of_start);

@@ -19,7 +19,7 @@ use crate::units::Quantity;
 use crate::units::number::said;
 
 /// The fewest points in contact for each free parameter.
-const PER_PARAMETER: usize = 3;
+pub(super) const PER_PARAMETER: usize = 3;
 /// The number of rows that show where a retraction begins.
 const TURN: usize = 5;
 /// The units of δ₀ and P₀ are their ranges, but at least this.
@@ -122,7 +122,7 @@ fn started(
     let of_edge = targets.iter().map(Target::key).find(|key| key.starts_with("edge."));
     let of_rate = has_rate(bare) && !attached.is_empty();
     if let Some(key) = of_edge.or_else(|| of_rate.then(|| RATE.to_owned())) {
-        keep_retraction(data, notes);
+        keep_retraction(data, branches.abscissa, notes);
         // Points beside a curve as it stands are pulled at its rate.
         if !options.free.is_empty() {
             set_rate(bare, branches, (&key, options.is_rate_said), notes)?;

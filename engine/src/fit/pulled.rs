@@ -107,7 +107,7 @@ fn unit_of(preset: &Preset, reduced: &Reduced, held: Control) -> Option<[f64; 2]
 }
 
 /// The value of the control at which the edge of `preset` comes to rest behind the turn, where the control went up to `turn`
-/// at `rate` and stayed there for the time `hold`. `length` is that by which a gap without one of its own is reduced.
+/// at `rate` and stayed there for the time `hold`; `None` where that cannot be followed. `length` is that by which a gap without one of its own is reduced.
 pub(super) fn rest_behind(preset: &Preset, length: f64, turn: f64, [rate, hold]: [f64; 2]) -> Option<f64> {
     /// The approach is followed from the first of these shares of the contact radius from which it can be: what was before is
     /// forgotten.
@@ -121,11 +121,14 @@ pub(super) fn rest_behind(preset: &Preset, length: f64, turn: f64, [rate, hold]:
     let hold = (hold > 0.0).then(|| Part::Hold { time: hold / time });
     let programme: Vec<Part> =
         [Some(up), hold, Some(Part::Apart { rate: away })].into_iter().flatten().collect();
-    let from =
-        |share: f64| Puller { start: share * puller.start, ..puller }.pull(&programme, &Unwatched).ok();
+    let settings = PullSettings { derivatives: false, ..puller.settings };
+    let from = |share: f64| {
+        Puller { start: share * puller.start, settings, ..puller }.pull(&programme, &Unwatched).ok()
+    };
     let pull = FROM.into_iter().find_map(from)?;
     let largest = pull.moments.iter().max_by(|a, b| a.contact_radius.total_cmp(&b.contact_radius))?;
-    (largest.time > pull.start.time).then_some(largest.control * value)
+    // An edge that only opens rests at the turn.
+    Some(if largest.time > pull.start.time { largest.control * value } else { turn })
 }
 
 impl Trail {

@@ -17,12 +17,18 @@ const AGREE: f64 = 4.0;
 const SAME: f64 = 0.01;
 
 /// Keeps only the points of the retraction, which alone are those of a pull.
-pub(super) fn keep_retraction(data: &mut Vec<Datum>, notes: &mut Vec<String>) {
+pub(super) fn keep_retraction(data: &mut Vec<Datum>, abscissa: Abscissa, notes: &mut Vec<String>) {
     let before = data.len();
     data.retain(|datum| datum.segment == Segment::Retraction);
     if data.len() < before {
+        let closing = if abscissa == Abscissa::Radius {
+            ", as if it rested at the turn. After a fast approach it still closes in the first rows, which are not found from \
+             contact radii: leave them out with --range force=..TO"
+        } else {
+            ""
+        };
         notes.push(format!(
-            "the {} points of the approach are left out: an edge with a speed is fitted to the retraction alone",
+            "the {} points of the approach are left out: an edge with a speed is fitted to the retraction alone{closing}",
             before - data.len()
         ));
     }

@@ -41,7 +41,7 @@ pub fn residuals_own(preset: &Preset) -> Result<(Abscissa, Vec<Residual>), FitEr
         None => problem,
     };
     let u = at_start(&problem);
-    let problem = match Approached::of(&problem, &branches, false) {
+    let problem = match Approached::of(&problem, &branches, None) {
         Some(approached) => approached.seen(problem, &u),
         None => problem,
     };

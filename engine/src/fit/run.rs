@@ -96,8 +96,7 @@ impl<'a> Posed<'a> {
             (starts, solved) = found(&mut problem)?;
         }
         let doubt;
-        let is_cut = options.asked.x.is_some();
-        (problem, solved, doubt) = of_start(problem, solved, (branches, is_cut), &mut notes, &solve)?;
+        (problem, solved, doubt) = of_start(problem, solved, (branches, options), &mut notes, &solve)?;
         let has_snaps =
             |paths: &Paths| [Segment::Approach, Segment::Retraction].iter().any(|of| paths.of(*of).snaps > 0);
         if problem.paths(&solved.minimum.parameters).is_some_and(|paths| has_snaps(&paths)) {
@@ -161,8 +160,7 @@ impl<'a> Posed<'a> {
         let verdict = verdict(ending, what.errors.is_some(), &reasons);
         notes.extend(growth(&problem, u, &what, verdict));
         let residuals = beside(&problem, &solved.minimum.at.residuals, solved.scale);
-        let mut warnings = warned(evidence, (preset, branches), &reasons, &mut fitted);
-        warnings.extend(doubt);
+        let warnings = warned(evidence, (preset, branches), &reasons, &mut fitted).into_iter().chain(doubt);
         let closing = problem.preset_at(u, Segment::Approach).map(|preset| preset.material.work_of_adhesion);
         let instrument = problem.instrument_at(u).turned(problem.turned);
         let widest = problem.paths(u).map_or(0.0, |paths| extent(&problem, u, &paths)[0]);
@@ -188,7 +186,7 @@ impl<'a> Posed<'a> {
             bootstrapped,
             turned: branches.turned,
             notes,
-            warnings,
+            warnings: warnings.collect(),
             scatter,
             preset: fitted_preset,
             instrument,
@@ -217,7 +215,7 @@ fn rows_of(matrix: &DMatrix<f64>) -> Vec<Vec<f64>> {
 fn of_start(
     mut problem: FitProblem,
     mut solved: SolvedFit,
-    (branches, is_cut): (&Branches, bool),
+    (branches, options): (&Branches, &Options),
     notes: &mut Vec<String>,
     solve: &impl Fn(&mut FitProblem, &[f64]) -> Result<SolvedFit, FitError>,
 ) -> Result<(FitProblem, SolvedFit, Option<String>), FitError> {
@@ -231,7 +229,7 @@ fn of_start(
         notes.push("no rows show that the edge is pinned before it recedes".to_owned());
     }
     let mut doubt = None;
-    if let Some(approached) = Approached::of(&problem, branches, is_cut) {
+    if let Some(approached) = Approached::of(&problem, branches, options.asked.x) {
         (problem, solved, doubt) = approached.settled(problem, solved, notes, solve);
     }
     if let Some(j) = unseen_start(&problem, &solved) {

@@ -160,10 +160,7 @@ pub(super) fn beyond_snaps(
     let huber = HUBER * solved.scale;
     let cost = |u: &[f64]| problem.cost_at(u, huber);
     let from = solved.minimum.parameters.clone();
-    let weights = solved.minimum.at.jacobian.tr_mul(&solved.minimum.at.jacobian);
-    let Some((covariance, mut least)) = weights.try_inverse().zip(cost(&from)) else { return solved };
-    let errors: Vec<f64> =
-        covariance.diagonal().iter().map(|variance| solved.scale * variance.sqrt()).collect();
+    let Some((errors, mut least)) = solved.errors().zip(cost(&from)) else { return solved };
     for (j, away) in (0..from.len()).flat_map(|j| AWAY.map(|away| (j, away))) {
         let mut u = from.clone();
         u[j] += away * errors[j];

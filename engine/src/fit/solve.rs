@@ -24,6 +24,15 @@ pub struct SolvedFit {
     pub scale: f64,
 }
 
+impl SolvedFit {
+    /// The errors of u, linearized; `None` where the points do not determine all values.
+    pub(super) fn errors(&self) -> Option<Vec<f64>> {
+        let jacobian = &self.minimum.at.jacobian;
+        let covariance = jacobian.tr_mul(jacobian).try_inverse()?;
+        Some(covariance.diagonal().iter().map(|variance| self.scale * variance.sqrt()).collect())
+    }
+}
+
 impl FitProblem {
     /// The same problem with at most `most` points, evenly taken from those in contact and those apart.
     pub(super) fn thinned(&self, most: usize) -> Self {

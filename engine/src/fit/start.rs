@@ -287,8 +287,8 @@ impl FitProblem {
     fn left(&self, mut best: FitEnd, robust: bool, progress: &dyn Progress) -> FitEnd {
         /// How often, while that leads anywhere.
         const TIMES: usize = 3;
-        const KEYS: [&str; 4] = ["material.effective_modulus", edge::REFERENCE_SPEED, edge::EXPONENT, START];
-        const FACTORS: [[f64; 2]; 4] = [[0.7, 1.4], [0.1, 10.0], [0.3, 1.6], [0.7, 1.4]];
+        const KEYS: [&str; 3] = ["material.effective_modulus", edge::REFERENCE_SPEED, START];
+        const FACTORS: [[f64; 2]; 3] = [[0.7, 1.4], [0.1, 10.0], [0.7, 1.4]];
         for _ in 0..TIMES {
             let (before, from) = (best.distance, best.u.clone());
             for (key, factors) in KEYS.into_iter().zip(FACTORS) {
@@ -446,6 +446,11 @@ fn ranked(problem: &FitProblem, scan: bool, robust: bool, progress: &dyn Progres
     ranked
 }
 
+/// The largest difference of a value.
+fn apart(u: &[f64], v: &[f64]) -> f64 {
+    u.iter().zip(v).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max)
+}
+
 /// Fits `run` from each candidate, and returns where the best one ends, with what became of all.
 fn best_of(
     run: &FitProblem,
@@ -467,7 +472,6 @@ fn best_of(
         ends.push((end.distance, end.u.clone()));
         // Each step of a pull is one more pull, so an end near the points that is reached from two starts far from each other
         // is final.
-        let apart = |u: &[f64], v: &[f64]| u.iter().zip(v).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
         let is_end = |best: &FitEnd| {
             best.distance < REACHED
                 && apart(&best.u, &end.u) < ONE
@@ -491,13 +495,11 @@ fn best_of(
         }
     }
     let is_other = |(distance, u): &(f64, Vec<f64>)| {
-        let apart = u.iter().zip(&best.u).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
-        *distance < AS_NEAR * best.distance && best.distance < REACHED && apart > ONE
+        *distance < AS_NEAR * best.distance && best.distance < REACHED && apart(u, &best.u) > ONE
     };
     let mut others: Vec<Vec<f64>> = Vec::new();
     for (_, u) in ends.into_iter().filter(is_other) {
-        let is_new = |other: &Vec<f64>| other.iter().zip(&u).any(|(a, b)| (a - b).abs() > ONE);
-        if others.iter().all(is_new) {
+        if others.iter().all(|other| apart(other, &u) > ONE) {
             others.push(u);
         }
     }

@@ -201,3 +201,23 @@ fn a_fold_is_known_no_better_than_to_the_next_row() {
     }
     assert!(described > 35 && square < 0.8 * f64::from(described), "{described}: {square}");
 }
+
+#[test]
+fn of_several_ends_the_nearest_to_all_rows_counts() {
+    let points = Body { state: &sphere(1.3, 0.02, 1.0), compliance: 0.0, most: 1.2 }.samples(300);
+    let preset = preset(SPHERE, 1.3, 0.02, "");
+    let options = Options { free: [E, W].map(str::to_owned).to_vec(), ..Options::default() };
+    let branches = points.branches(&options.asked).unwrap();
+    let problem = pose::posed(&preset, &branches, &options, &mut Vec::new()).unwrap();
+    let truth: Vec<f64> = problem.parameters.iter().map(|of| of.inner(of.start)).collect();
+    let beside: Vec<f64> = truth.iter().map(|u| u + 0.05).collect();
+    let end = |u: &[f64]| solve::solve(&problem, u, false, 0, &Unwatched).unwrap();
+    let from = |u: &[f64], others: &[Vec<f64>]| {
+        let found = settled::nearest(&problem, end(u), others, false, &Unwatched);
+        found.minimum.parameters
+    };
+    let is_at_truth = |u: &[f64]| u.iter().zip(&truth).take(2).all(|(a, b)| (a - b).abs() < 1e-3);
+    assert!(!is_at_truth(&from(&beside, &[])), "no round is made");
+    assert!(is_at_truth(&from(&beside, std::slice::from_ref(&truth))));
+    assert!(is_at_truth(&from(&truth, &[])));
+}

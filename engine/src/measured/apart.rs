@@ -71,7 +71,8 @@ fn is_contact(x: &[f64], force: &[f64], [from, to]: [usize; 2]) -> bool {
         let of = |values: &[f64], from: usize, to: usize| median(values[from..to].to_vec()).unwrap_or(0.0);
         (of(force, from, half) - of(force, half, to)) / (of(x, from, half) - of(x, half, to))
     };
-    to - from >= BETWEEN && slope(from, to) > OF_SLOPE * slope(0, from)
+    let before = slope(0, from);
+    to - from >= BETWEEN && before > 0.0 && slope(from, to) > OF_SLOPE * before
 }
 
 /// The jump among so few rows that a single one is as high as their noise seems to be.

@@ -22,7 +22,7 @@ use super::points::{Abscissa, Points, Turned, turn};
 use super::role::Segment;
 use super::sigma::noise;
 use super::signs::{Orientation, UnsignedPoints, is_swapped};
-use super::turns::{by_time, one_way, rises, runs, without_hold};
+use super::turns::{by_time, one_way, rises, runs, without_pause};
 use crate::text::counted;
 use thiserror::Error;
 
@@ -403,7 +403,7 @@ impl Points {
         }
         notes.extend(self.order(&parts));
         let held = |(segment, part): &mut (Segment, Vec<MeasuredPoint>)| {
-            without_hold(part, *segment == Segment::Retraction)
+            without_pause(part, *segment == Segment::Retraction)
         };
         // A contact radius stands still while the edge is pinned, which is no pause.
         let moves = self.abscissa != Abscissa::Radius;

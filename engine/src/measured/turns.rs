@@ -15,22 +15,26 @@ const IN_RUNS: f64 = 0.9;
 
 /// Takes the rows out of `part` in which x stands still at its largest value: those at its beginning if it is a retraction, at
 /// its end if it is an approach. One of them stays.
-pub(super) fn without_hold(part: &mut Vec<MeasuredPoint>, is_retraction: bool) -> Vec<MeasuredPoint> {
+pub(super) fn without_pause(part: &mut Vec<MeasuredPoint>, is_retraction: bool) -> Vec<MeasuredPoint> {
     /// x stands still where it changes by less than this share of the steps that follow.
     const STILL: f64 = 0.5;
     /// The number of steps that follow.
     const BESIDE: usize = 5;
-    /// Behind a soft spring the approach hardly changes while the force does. During a hold that changes by at most this share
+    /// Behind a soft spring the approach hardly changes while the force does. During a pause that changes by at most this share
     /// of its range.
     const RELAXES: f64 = 0.3;
-    /// Steps of a converter make x stand still everywhere: a hold has this many times as many rows.
+    /// Steps of a converter make x stand still everywhere: a pause has this many times as many rows.
     const LONGER: f64 = 4.0;
     let from_turn = |i: usize| part[if is_retraction { i } else { part.len() - 1 - i }].x;
     let Some(last) = part.len().checked_sub(BESIDE + FEWEST) else { return Vec::new() };
     let step = |i: usize| (from_turn(i + 1) - from_turn(i)).abs();
     let (turn, mut off, mut count) = (from_turn(0), 0.0_f64, 0);
+    let longest = (0..part.len() - 1).map(step).fold(0.0, f64::max);
     for i in 1..last {
         off = off.max((from_turn(i) - turn).abs());
+        if off > STILL * longest {
+            break;
+        }
         let beside = median((i..i + BESIDE).map(step).collect()).unwrap_or(0.0);
         if beside > 0.0 && off <= STILL * beside {
             count = i;
