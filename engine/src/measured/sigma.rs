@@ -1,17 +1,17 @@
 //! How well the columns are known: σ of x, P and s.
 //!
 //! ```text
-//! σ_P = median |P_i − P_{i+1}| / 0.954                 of the free part, for normal noise
-//! σ_P = √(Σ (P_i − P_{i+1})² / 2n)                     of a force in steps, whose median is a whole number of them; at least a step/√12
+//! σ_P = √(Σ (P_i − P_{i+1})² / 2n)                     of the free part, at least a step of the converter/√12
 //! σ_P = median |P_i − line through neighbours| / …      without one, of the rows in contact, over x; of radii with times over these
-//! σ_x = max(last digit, median |x_{i−1} − 2x_i + x_{i+1}| / 1.652)    both at least 1e-4 of their range
+//! σ_x = max(last digit, √(Σ (x_{i−1} − 2x_i + x_{i+1})² / 6n))        both at least 1e-4 of their range
 //! ```
 //!
-//! Where x, P and s are all measured, each in contact shows its noise over the number of the row, the time, and the other
-//! two: the least of these holds least of the noise of another column, and of uneven steps.
+//! Outliers count in the sums only up to a bound. Where x, P and s are all measured, each in contact shows its noise over
+//! the number of the row, the time, and the other two: the least of these holds least of the noise of another column, and
+//! of uneven steps.
 
 use super::free::OrderedBranch;
-use super::noise::{FLOOR, Noise, Origin, median, scatter_over, variance};
+use super::noise::{FLOOR, Noise, Origin, scatter_over, variance};
 use super::points::MeasuredPoint;
 use super::speed::noise as noise_in_order;
 use crate::elementary::hypot;
@@ -108,15 +108,10 @@ pub(super) fn noise(
     // Few rows apart show nothing: those in contact say more.
     let is_known = forces.len() >= FEWEST_APART || neighbours.is_none();
     let step = converter.unwrap_or(0.0);
-    let of_forces = if step > 0.0 {
-        variance(&forces).map(|square| (0.5 * square).sqrt())
-    } else {
-        median(forces).map(|off| off / 0.954)
-    };
-    let apart = of_forces.filter(|_| is_known);
+    let apart = variance(&forces).map(|square| (square / 2.0).sqrt()).filter(|_| is_known);
     // The scatter of radii over forces includes that of the force: the two cannot be separated if neither is known.
     let known = apart.is_some() || given[1].is_some() || has_clock;
-    let of_ways = || median(ways).map(|way| way / 1.652);
+    let of_ways = || variance(&ways).map(|square| (square / 6.0).sqrt());
     let ways = if of_radius { radius.filter(|_| known) } else { of_ways() };
     let ways_in_contact = ways_in_contact.into_iter().reduce(f64::min);
     let of = |found: Option<f64>, origin| found.map(|found| (found, origin));
