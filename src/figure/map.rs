@@ -175,17 +175,28 @@ pub fn taken(report: &MapReport, preset: &Preset, (x, y): (f64, f64)) -> Vec<(Ke
     assignment(&report.x, x).into_iter().chain(assignment(&report.y, y)).collect()
 }
 
-/// The number of snaps at a point of the figure, by the nearest cell that was counted.
-pub fn count(report: &MapReport, preset: &Preset, (x, y): (f64, f64)) -> Option<usize> {
+/// The number of snaps at a point of the figure, in words: where the counts around it differ, all that are possible. `None`
+/// for limit points over one number.
+pub fn count(report: &MapReport, preset: &Preset, (x, y): (f64, f64)) -> Option<String> {
     let counts = report.counts.as_ref()?;
-    let nearest = |axis: &AxisReport, values: &[Option<f64>], place: f64| {
+    // The lines of the grid on either side.
+    let around = |axis: &AxisReport, values: &[Option<f64>], place: f64| {
         let places = Places::of(axis, preset, report.control);
-        let run = places.axis.run;
-        let away = |value: &Option<f64>| (run.place(places.at(*value)) - run.place(place)).abs();
-        values.iter().map(away).enumerate().min_by(|a, b| a.1.total_cmp(&b.1)).map(|(at, _)| at)
+        let at: Vec<f64> = values.iter().map(|value| places.at(*value)).collect();
+        let below = at.iter().rposition(|at| *at <= place)?;
+        let above = at.iter().position(|at| *at >= place)?;
+        Some([below, above])
     };
-    let (column, row) = (nearest(&report.x, &counts.x, x)?, nearest(&report.y, &counts.y, y)?);
-    counts.snaps[row][column]
+    let Some((columns, rows)) = around(&report.x, &counts.x, x).zip(around(&report.y, &counts.y, y)) else {
+        return Some("outside the map".to_owned());
+    };
+    let cells = rows.into_iter().flat_map(|row| columns.map(|column| counts.snaps[row][column]));
+    let Some(found) = cells.collect::<Option<Vec<usize>>>() else { return Some("no path here".to_owned()) };
+    Some(match (found.iter().min()?, found.iter().max()?) {
+        (1, 1) => "1 snap".to_owned(),
+        (least, most) if least == most => format!("{least} snaps"),
+        (least, most) => format!("{least} to {most} snaps"),
+    })
 }
 
 /// A number rounded to four digits.

@@ -36,9 +36,11 @@ use std::sync::Arc;
 /// A formula is searched out to this many of its lengths.
 const LENGTHS: f64 = 10.0;
 
-/// The nearest crest is looked for up to this multiple of s or this many waves outside the edge, whichever is more.
+/// The nearest crest is looked for up to this multiple of s or this many waves outside the edge, whichever is more, but
+/// over no more waves than the last of these: the gap at a crest is a sum over all waves up to there.
 const FARTHEST: f64 = 4.0;
 const FARTHEST_WAVES: f64 = 3.0;
+const MOST_WAVES: f64 = 100.0;
 
 /// Steps per wave: a parabola through three of them sees every crest.
 const STEPS_PER_WAVE: f64 = 8.0;
@@ -311,7 +313,8 @@ fn vertex([a, b, c]: [f64; 3], [fa, fb, fc]: [f64; 3]) -> (f64, f64, f64) {
 
 /// How far out, at most, the nearest crest is looked for.
 fn farthest(s: f64, wave: Option<f64>) -> f64 {
-    (FARTHEST * s).max(s + FARTHEST_WAVES * wave.unwrap_or(0.0))
+    let most = wave.map_or(f64::INFINITY, |wave| s + MOST_WAVES * wave);
+    (FARTHEST * s).max(s + FARTHEST_WAVES * wave.unwrap_or(0.0)).min(most)
 }
 
 /// The radii of the search, from `s` outward.

@@ -89,6 +89,10 @@ pub fn reading(model: &Model) -> Option<String> {
     }
     let subject = Subject::of(model)?;
     let figure = subject.figure(view).on_screen();
+    if figure.lines.is_empty() && figure.marks.is_empty() {
+        // It is not computed yet, or there is none.
+        return None;
+    }
     let bounds = figure.bounds.part(&model.window(view));
     let at = on_its_line(&subject, view, &figure, bounds.at(share));
     let here = reading::coordinates(&bounds, [&figure.x, &figure.y], at);
@@ -100,7 +104,7 @@ pub fn reading(model: &Model) -> Option<String> {
         _ => None,
     };
     if let Some(snaps) = snaps {
-        return Some(format!("{snaps} {}; + {here}", if snaps == 1 { "snap" } else { "snaps" }));
+        return Some(format!("{snaps}; + {here}"));
     }
     Some(match nearest(&subject, view, &bounds, at) {
         // The state comes first: it is new information, and narrow screens cut off the end.

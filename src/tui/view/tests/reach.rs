@@ -493,6 +493,14 @@ fn the_cross_hair_on_a_map_counts_the_snaps() {
     let path = screen.app.model.path().unwrap();
     let snaps = path.events.iter().filter(|event| event.kind == "snap").count();
     assert!(text.contains(&format!("{snaps} snaps; + A 0.0025")), "{text}");
+    // At a line of the map either count may hold, and beyond its border none is known.
+    let mut said = String::new();
+    for _ in 0..40 {
+        screen.press(KeyCode::Up);
+        said.push_str(&screen.text(100, 40));
+    }
+    assert!(said.lines().any(|line| line.contains(" to ") && line.contains(" snaps; + A ")), "{said}");
+    assert!(said.contains("outside the map; + A"), "{said}");
     for said in ["swallowtail", "number of snaps unchanged", "line of landings"] {
         assert!(text.contains(said), "{said}: {text}");
     }
