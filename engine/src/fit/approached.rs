@@ -31,6 +31,7 @@ const NOT_FOLLOWED: &str = "after an approach as fast as in this file the edge m
 struct NotFollowed;
 
 /// The approach before a pull.
+#[derive(Clone)]
 pub(super) struct Approached {
     /// The rate of the control on the way up, and how long it was held at the turn.
     way: [f64; 2],
@@ -38,6 +39,8 @@ pub(super) struct Approached {
     is_seen: bool,
     /// Whether the user leaves out the rows near the turn.
     is_cut: bool,
+    /// What is doubtful if all its rows are used, in words.
+    pub(super) doubt: Option<String>,
 }
 
 impl Approached {
@@ -68,7 +71,7 @@ impl Approached {
         });
         let is_cut =
             range.is_some_and(|range| if branches.turned[0] { range.lo } else { range.hi }.is_finite());
-        Some(Self { way: [rate, hold.max(0.0)], is_seen: measured.is_some(), is_cut })
+        Some(Self { way: [rate, hold.max(0.0)], is_seen: measured.is_some(), is_cut, doubt: None })
     }
 
     /// `problem` without the rows in which the edge still closes at the values `u`. `None` where there are none, or where too
@@ -87,55 +90,62 @@ impl Approached {
         Ok(Some(left).filter(|left| left.data.len() < problem.data.len() && is_enough))
     }
 
-    /// `problem` at the values `u`, without the rows that a fit leaves out.
-    pub(super) fn seen(&self, problem: FitProblem, u: &[f64]) -> FitProblem {
-        let left = self.without(&problem, u).ok().flatten();
-        let left = left.filter(|left| self.is_seen || contradicts(&problem, left, [u, u], 1.0));
-        left.unwrap_or(problem)
+    /// `problem` at the values `u`, without the rows that a fit leaves out, σ being `scale` times as large; `None` where it
+    /// leaves none out.
+    pub(super) fn seen(&self, problem: &FitProblem, u: &[f64], scale: f64) -> Option<FitProblem> {
+        let left = self.without(problem, u).ok().flatten();
+        left.filter(|left| self.is_seen || contradicts(problem, left, [u, u], scale))
     }
 
     /// The fit without the rows in which the edge still closes, if the file shows the rate of the approach, or if these rows
-    /// contradict an edge that rests. Otherwise the whole fit, with what is doubtful about it.
+    /// contradict an edge that rests. Otherwise the whole fit, and the approach, all rows of which are then used.
     pub(super) fn settled(
-        &self,
+        self,
         whole: FitProblem,
         from: SolvedFit,
         notes: &mut Vec<String>,
         solve: impl Fn(&mut FitProblem, &[f64]) -> Result<SolvedFit, FitError>,
-    ) -> (FitProblem, SolvedFit, Option<String>) {
+    ) -> (FitProblem, SolvedFit, Option<Self>) {
         let mut found: Option<(FitProblem, SolvedFit)> = None;
         for _ in 0..ROUNDS {
             let u = &found.as_ref().map_or(&from, |(_, solved)| solved).minimum.parameters;
             let mut problem = match self.without(&whole, u) {
                 Ok(Some(problem)) => problem,
                 Err(NotFollowed) if self.is_seen && found.is_none() => {
-                    return (whole, from, Some(NOT_FOLLOWED.to_owned()));
+                    return (whole, from, Some(Self { doubt: Some(NOT_FOLLOWED.to_owned()), ..self }));
                 }
                 _ => break,
             };
             let Ok(solved) = solve(&mut problem, u) else { break };
             found = Some((problem, solved));
         }
-        let Some((problem, solved)) = found else { return (whole, from, None) };
+        let Some((problem, solved)) = found else { return (whole, from, Some(self)) };
         let rows = whole.data.len() - problem.data.len();
         let both = [&from, &solved].map(|solved| &*solved.minimum.parameters);
+        if !self.is_seen && !contradicts(&whole, &problem, both, solved.scale) {
+            let moved = moved(&from, &solved, &problem).filter(|_| !self.is_cut);
+            let doubt = moved.map(|(key, by)| doubt(&problem, rows, &key, by));
+            return (whole, from, Some(Self { doubt, ..self }));
+        }
+        notes.push(self.note(&problem, rows));
+        (problem, solved, None)
+    }
+
+    /// That so many first rows are left out, and why.
+    pub(super) fn note(&self, problem: &FitProblem, rows: usize) -> String {
         let why = if self.is_seen {
-            let rate = said(&whole.preset.units, Quantity::Speed, self.way[0]);
+            let rate = said(&problem.preset.units, Quantity::Speed, self.way[0]);
             format!("after an approach at {rate} the edge still closes there")
-        } else if contradicts(&whole, &problem, both, solved.scale) {
+        } else {
             "they contradict an edge that rests at the turn; after a fast approach it would still close there"
                 .to_owned()
-        } else {
-            let moved = moved(&from, &solved, &problem).filter(|_| !self.is_cut);
-            return (whole, from, moved.map(|(key, by)| doubt(&problem, rows, &key, by)));
         };
-        notes.push(format!("the first {rows} rows of the retraction are left out: {why}"));
-        (problem, solved, None)
+        format!("the first {rows} rows of the retraction are left out: {why}")
     }
 }
 
 /// Whether the rows of `whole` that are not in `left` contradict an edge that rests, σ being `scale` times as large: by how much
-/// they raise χ², from a fit without them to one with them, or by the mean of a half of their residuals.
+/// they raise χ², from a fit without them to one with them, or by the mean of a half of their residuals of one kind.
 fn contradicts(whole: &FitProblem, left: &FitProblem, [with, without]: [&[f64]; 2], scale: f64) -> bool {
     /// The standard deviations that are not chance.
     const SURE: f64 = 5.0;
@@ -146,12 +156,16 @@ fn contradicts(whole: &FitProblem, left: &FitProblem, [with, without]: [&[f64]; 
     let raises =
         |(all, others): (f64, f64)| 2.0 * (all - others) / scale.powi(2) > rows + SURE * (2.0 * rows).sqrt();
     let is_kept: BTreeSet<usize> = left.data.iter().map(|datum| datum.point.at).collect();
-    let off: Vec<f64> = whole.residuals(with).map_or_else(Vec::new, |residuals| {
-        let first = whole.data.iter().zip(residuals.iter().step_by(whole.per_point()));
-        first.filter(|(datum, _)| !is_kept.contains(&datum.point.at)).map(|(_, r)| r / scale).collect()
-    });
+    let per = whole.per_point();
+    let residuals = whole.residuals(with);
+    // Across the curve, and along the radius where that is measured, too.
+    let of_part = |part: usize| -> Vec<f64> {
+        let all = residuals.iter().flat_map(|all| whole.data.iter().zip(all.iter().skip(part).step_by(per)));
+        all.filter(|(datum, _)| !is_kept.contains(&datum.point.at)).map(|(_, r)| r / scale).collect()
+    };
     let is_off = |half: &[f64]| half.iter().sum::<f64>().abs() > SURE * (half.len() as f64).sqrt();
-    costs.is_some_and(raises) || off.chunks(off.len().div_ceil(2).max(1)).any(is_off)
+    let any_off = |off: Vec<f64>| off.chunks(off.len().div_ceil(2).max(1)).any(is_off);
+    costs.is_some_and(raises) || (0..per).any(|part| any_off(of_part(part)))
 }
 
 /// That the first rows, without which the value `key` differs by so many errors, may not be those of an edge that rests.

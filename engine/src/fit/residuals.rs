@@ -41,10 +41,8 @@ pub fn residuals_own(preset: &Preset) -> Result<(Abscissa, Vec<Residual>), FitEr
         None => problem,
     };
     let u = at_start(&problem);
-    let problem = match Approached::of(&problem, &branches, None) {
-        Some(approached) => approached.seen(problem, &u),
-        None => problem,
-    };
+    let approached = Approached::of(&problem, &branches, None);
+    let problem = approached.and_then(|approached| approached.seen(&problem, &u, 1.0)).unwrap_or(problem);
     let residuals = LeastSquares::residuals(&problem, &u).ok_or(FitError::NoStart)?;
     let scale = problem.scale(&residuals);
     Ok((branches.abscissa, beside(&problem, &residuals, scale)))

@@ -17,10 +17,10 @@ use super::residuals::{beside, of_part};
 use super::rows::Rows;
 use super::scatter::Scatter;
 use super::settled::{
-    beyond_snaps, last, nearest, of_correlated, of_tare, pinned_again, unpinned, unseen_start,
+    self, beyond_snaps, last, nearest, of_correlated, of_tare, pinned_again, unpinned, unseen_start,
 };
 use super::shown::{KnownNoise, of_shown_noise};
-use super::solve::SolvedFit;
+use super::solve::{SolvedFit, solve};
 use super::start::{Tried, start};
 use super::uncertain::given;
 use super::verdict::{Reason, Verdict};
@@ -62,8 +62,8 @@ pub(super) struct Posed<'a> {
     starts: Vec<Tried>,
     pub(super) solved: SolvedFit,
     notes: Vec<String>,
-    /// What is doubtful about its rows, in words.
-    doubt: Option<String>,
+    /// The approach before a pull of which all rows are used.
+    approached: Option<Approached>,
 }
 
 impl<'a> Posed<'a> {
@@ -95,8 +95,8 @@ impl<'a> Posed<'a> {
             problem = problem.without_loading(why, &mut notes)?;
             (starts, solved) = found(&mut problem)?;
         }
-        let doubt;
-        (problem, solved, doubt) = of_start(problem, solved, (branches, options), &mut notes, &solve)?;
+        let approached;
+        (problem, solved, approached) = of_start(problem, solved, (branches, options), &mut notes, &solve)?;
         let has_snaps =
             |paths: &Paths| [Segment::Approach, Segment::Retraction].iter().any(|of| paths.of(*of).snaps > 0);
         if problem.paths(&solved.minimum.parameters).is_some_and(|paths| has_snaps(&paths)) {
@@ -118,7 +118,22 @@ impl<'a> Posed<'a> {
             solved = of_tare(&mut problem, solved, options.robust, (&mut notes, progress));
         }
         notes.extend(of_no_free_part(&problem, branches));
-        Ok(Self { preset, branches, options, problem, starts, solved, notes, doubt })
+        Ok(Self { preset, branches, options, problem, starts, solved, notes, approached })
+    }
+
+    /// Leaves out the rows in which the edge still closes after a fast approach, if under a law that other curves determine, too,
+    /// where its values are `under`, they contradict an edge that rests. Says whether it did.
+    pub(super) fn leaves_out_closing(&mut self, under: &SolvedFit, progress: &dyn Progress) -> bool {
+        let u = &under.minimum.parameters;
+        let seen = |approached: &Approached| approached.seen(&self.problem, u, under.scale);
+        let left = self.approached.as_ref().and_then(seen);
+        let solve =
+            |left: FitProblem| Some((solve(&left, u, self.options.robust, settled::ROUNDS, progress)?, left));
+        let Some((solved, left)) = left.and_then(solve) else { return false };
+        let rows = self.problem.data.len() - left.data.len();
+        self.notes.extend(self.approached.take().map(|approached| approached.note(&left, rows)));
+        (self.problem, self.solved) = (left, solved);
+        true
     }
 
     /// The fit, where `what` is determined by its points `alone` or by others too.
@@ -129,7 +144,7 @@ impl<'a> Posed<'a> {
         alone: bool,
         progress: &dyn Progress,
     ) -> Result<Fit, FitError> {
-        let Self { preset, branches, options, problem, starts, solved, mut notes, doubt } = self;
+        let Self { preset, branches, options, problem, starts, solved, mut notes, approached } = self;
         let u = &solved.minimum.parameters;
         let unseen = unseen(&problem, &solved, (&what, &scatter), options.robust, progress);
         let is_unseen = unseen.is_some();
@@ -160,6 +175,7 @@ impl<'a> Posed<'a> {
         let verdict = verdict(ending, what.errors.is_some(), &reasons);
         notes.extend(growth(&problem, u, &what, verdict));
         let residuals = beside(&problem, &solved.minimum.at.residuals, solved.scale);
+        let doubt = approached.and_then(|approached| approached.doubt);
         let warnings = warned(evidence, (preset, branches), &reasons, &mut fitted).into_iter().chain(doubt);
         let closing = problem.preset_at(u, Segment::Approach).map(|preset| preset.material.work_of_adhesion);
         let instrument = problem.instrument_at(u).turned(problem.turned);
@@ -211,14 +227,15 @@ fn rows_of(matrix: &DMatrix<f64>) -> Vec<Vec<f64>> {
     matrix.row_iter().map(|row| row.iter().copied().collect()).collect()
 }
 
-/// Solves again what depends on where the edge is pinned, or where a pull starts; with what is doubtful about that.
+/// Solves again what depends on where the edge is pinned, or where a pull starts; with the approach before it if all rows of that
+/// are used.
 fn of_start(
     mut problem: FitProblem,
     mut solved: SolvedFit,
     (branches, options): (&Branches, &Options),
     notes: &mut Vec<String>,
     solve: &impl Fn(&mut FitProblem, &[f64]) -> Result<SolvedFit, FitError>,
-) -> Result<(FitProblem, SolvedFit, Option<String>), FitError> {
+) -> Result<(FitProblem, SolvedFit, Option<Approached>), FitError> {
     if problem.pins() {
         (problem, solved) = pinned_again(problem, solved, solve);
     }
@@ -228,9 +245,9 @@ fn of_start(
         solved = solve(&mut problem, &u)?;
         notes.push("no rows show that the edge is pinned before it recedes".to_owned());
     }
-    let mut doubt = None;
-    if let Some(approached) = Approached::of(&problem, branches, options.asked.x) {
-        (problem, solved, doubt) = approached.settled(problem, solved, notes, solve);
+    let mut approached = Approached::of(&problem, branches, options.asked.x);
+    if let Some(before) = approached {
+        (problem, solved, approached) = before.settled(problem, solved, notes, solve);
     }
     if let Some(j) = unseen_start(&problem, &solved) {
         (problem, solved) = held_start(&problem, solved, j, solve)?;
@@ -241,7 +258,7 @@ fn of_start(
             ));
         }
     }
-    Ok((problem, solved, doubt))
+    Ok((problem, solved, approached))
 }
 
 /// The problem with the contact radius `j`, at which a pull starts, held, and its minimum as `solve` finds it. The edge starts

@@ -279,6 +279,18 @@ pub fn fit_together(
         least(&Joint::of(posed, options.robust), progress).ok_or((0, FitError::NoStart))
     };
     let mut minimum = least_of(&posed)?;
+    let under_law = |posed: &[Posed<'_>], minimum: &Minimum| -> Vec<SolvedFit> {
+        let joint = Joint::of(posed, options.robust);
+        let blocks = joint.blocks();
+        joint.curves.iter().zip(&blocks).map(|of| joint.solved(of, minimum)).collect()
+    };
+    let mut has_left_out = false;
+    for (run, under) in under_law(&posed, &minimum).iter().enumerate() {
+        has_left_out |= posed[run].leaves_out_closing(under, progress);
+    }
+    if has_left_out {
+        minimum = least_of(&posed)?;
+    }
     let nearer = Joint::of(&posed, options.robust).nearer(&minimum, progress);
     if !nearer.is_empty() {
         for (run, solved) in nearer {
@@ -287,9 +299,7 @@ pub fn fit_together(
         minimum = least_of(&posed)?;
     }
     let joint = Joint::of(&posed, options.robust);
-    let blocks = joint.blocks();
-    let solved: Vec<SolvedFit> =
-        joint.curves.iter().zip(&blocks).map(|of| joint.solved(of, &minimum)).collect();
+    let solved = under_law(&posed, &minimum);
     let scatters: Vec<Scatter> =
         joint.curves.iter().zip(&solved).map(|(curve, solved)| curve.problem.scatter(solved)).collect();
     let known = known(&joint, (&solved, &scatters), &minimum);
