@@ -10,7 +10,7 @@ use crate::explorer::model::Model;
 use crate::explorer::view::{Home, Overlay, View};
 use crate::explorer::{pins, reach};
 use crate::store::shipped::{self, SHIPPED};
-use pulloff_engine::preset::Preset;
+use pulloff_engine::preset::{Parameter, Preset};
 use pulloff_engine::preset::called::settable;
 use pulloff_engine::preset::groups::GROUPS;
 use pulloff_engine::preset::measured::SHIPPED_DATA;
@@ -219,7 +219,12 @@ pub(in crate::explorer) fn axes_of(typing: &Typing<'_>) -> Vec<Offer> {
 /// The keys of the preset that have numbers.
 fn numbers(preset: &Preset) -> Vec<Offer> {
     let rows = preset.rows().filter(|row| row.kind.is_number() && preset.get(&row.key).is_some());
-    rows.map(|row| Offer::new(&*row.key, &*row.meaning)).collect()
+    rows.map(|row| Offer::new(&*row.key, named(&row))).collect()
+}
+
+/// What a key is, after the symbol under which the screen shows it.
+fn named(row: &Parameter) -> String {
+    format!("{}: {}", row.label, row.meaning)
 }
 
 /// The keys of the preset, or the words that the key being typed takes.
@@ -228,7 +233,7 @@ pub(in crate::explorer) fn assignments_of(typing: &Typing<'_>) -> Vec<Offer> {
     let Some((key, _)) = typing.word.split_once('=') else {
         // Those that have, or could have, a value here.
         let rows = settable(preset).filter(|row| row.key != "format");
-        return rows.map(|row| Offer::new(format!("{}=", row.key), &*row.meaning)).collect();
+        return rows.map(|row| Offer::new(format!("{}=", row.key), named(&row))).collect();
     };
     let row = preset.row(key);
     let values: &[&str] = match row.as_ref().map(|row| row.kind) {

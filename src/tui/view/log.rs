@@ -273,12 +273,12 @@ const COLUMNS: [(u8, bool); 10] = [
     (3, true),
     // δ, and after it.
     (1, false),
-    (5, false),
+    (4, false),
     // P, and after it.
     (0, false),
     (2, false),
     // s, and after it.
-    (4, false),
+    (5, false),
     (6, false),
     // Crests.
     (0, true),
