@@ -464,7 +464,9 @@ impl Case {
 
     /// A warning, if an unloading starts where larger contacts pull more than all on its way.
     pub fn warning_of_start(&self, path: &Path) -> Option<String> {
-        let start = path.start().filter(|start| start.rings() == 0)?.contact_radius;
+        // A path from the first touch has no start that could be elsewhere.
+        let start = path.start().filter(|start| start.rings() == 0 && start.contact_radius > 0.0)?;
+        let start = start.contact_radius;
         if !self.is_cut_off(path, Control::Force) {
             return None;
         }

@@ -64,7 +64,7 @@ pub fn stroke(role: Role) -> Stroke {
         Role::Stable => stroke(BLUE, 1.6, ""),
         Role::Inadmissible => stroke(PURPLE, 3.0, "0.8 2.4"),
         Role::Loading => stroke(GREEN, 1.3, "5 1.2"),
-        Role::Unloading => stroke(BLUE, 1.3, "11 1.5"),
+        Role::Unloading => stroke(BLUE, 1.3, "5 1 1 1 1 1"),
         Role::Edges => stroke(BLUE, 1.0, ""),
         Role::Body => stroke(BLUE, 1.4, ""),
         Role::Contact => stroke(BLACK, 2.0, ""),

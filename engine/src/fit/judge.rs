@@ -103,11 +103,13 @@ pub(super) fn reasons(evidence: Evidence, preset: &Preset, clipped: Option<Clipp
     reasons.extend(scores::of_shape(evidence));
     reasons.extend(scores::of_branches(evidence));
     reasons.extend(touch::of_late(evidence));
+    if !is_pulled(&problem.preset) {
+        reasons.extend(touch::of_touch(evidence));
+    }
     if preset.cohesion().is_some() {
         reasons.extend(range::of_zone(problem, solved));
     } else if !is_pulled(&problem.preset) {
         // All of these start from what an adhesion at the edge alone does.
-        reasons.extend(touch::of_touch(evidence));
         reasons.extend(scores::of_range(evidence));
         reasons.extend(rate::of_rate(evidence));
         reasons.extend(of_range(preset));
@@ -247,8 +249,11 @@ pub(super) fn doubts(
             .to_owned(),
         );
     }
+    // The law of an edge shares the pull with the work of adhesion: a fast edge shows their sum alone.
+    let shares = problem.parameters.iter().any(|of| of.key().starts_with("edge."));
     for fitted in adhesions.into_iter().flatten() {
-        if let Some(error) = fitted.standard_error.filter(|error| fitted.value < FROM_NONE * error) {
+        let error = fitted.standard_error.filter(|error| !shares && fitted.value < FROM_NONE * error);
+        if let Some(error) = error {
             doubts.push(format!(
                 "{} is only {} standard errors above 0: the points hardly distinguish it from no adhesion",
                 fitted.key,

@@ -13,7 +13,8 @@ use super::verdict::{Reason, Verdict};
 use crate::gap::Gap;
 use crate::measured::points::Turned;
 use crate::measured::{Abscissa, Instrument, Noise};
-use crate::preset::Preset;
+use crate::preset::{Preset, edge};
+use crate::problem::Control;
 use crate::units::{Quantity, number::said};
 
 /// A fit.
@@ -88,7 +89,7 @@ impl Fit {
     }
 
     /// A sentence on a radius of curvature that is held: (R, E*, γ) → (a²R, E*/a, γ/a²) leaves P(δ) of a sphere as it is, and
-    /// (aR, aE*, γ/a) its P(s).
+    /// (aR, aE*, γ/a) its P(s). A speed of the edge goes with s in the first, and with 1/δ in the second.
     fn of_radius(&self) -> Option<String> {
         let gap = &self.preset.gap;
         let radius = gap.radius_of_curvature().filter(|_| gap.feature_length().is_none())?;
@@ -100,10 +101,16 @@ impl Fit {
             return None;
         }
         let radius = said(&self.preset.units, Quantity::Length, radius);
+        let is_at_given_speed = of_radius && self.preset.path.control == Control::Force;
+        let [values, shown] = match (is_free(edge::REFERENCE_SPEED) && !is_at_given_speed, of_radius) {
+            (false, false) => ["E* and γ", "E*√R and γR"],
+            (false, true) => ["E* and γ", "E*/R and γE*"],
+            (true, false) => ["E*, γ and v0", "E*√R, γR and v0/√R"],
+            (true, true) => ["E*, γ and v0", "E*/R, γE* and v0/R"],
+        };
+        let missing = if of_radius { "an approach" } else { "contact radii" };
         Some(format!(
-            "E* and γ hold for R = {radius}, which is not fitted: without {} the points show {}",
-            if of_radius { "an approach" } else { "contact radii" },
-            if of_radius { "E*/R and γE*" } else { "E*√R and γR" },
+            "{values} hold for R = {radius}, which is not fitted: without {missing} the points show {shown}"
         ))
     }
 

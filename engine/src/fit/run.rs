@@ -18,10 +18,11 @@ use super::rows::Rows;
 use super::scatter::Scatter;
 use super::settled::{
     self, beyond_snaps, last, nearest, of_correlated, of_tare, pinned_again, unpinned, unseen_start,
+    within_range,
 };
 use super::shown::{KnownNoise, of_shown_noise};
 use super::solve::{SolvedFit, solve};
-use super::start::{Tried, start};
+use super::start::{REACHED, Tried, start};
 use super::uncertain::given;
 use super::verdict::{Reason, Verdict};
 use crate::elementary::{ln, pow};
@@ -31,7 +32,7 @@ use crate::preset::{Preset, edge};
 use crate::problem::Start;
 use crate::progress::{Progress, ProgressPart};
 use crate::units::Quantity;
-use crate::units::number::{said, significant};
+use crate::units::number::{said, short, significant};
 use nalgebra::{DMatrix, DVector};
 
 /// Fits the free keys of `preset` to `branches`.
@@ -88,7 +89,8 @@ impl<'a> Posed<'a> {
             let ends = start(problem, options.scan, options.robust, &ProgressPart::new(progress, [0.0, 0.8]))
                 .ok_or(FitError::NoStart)?;
             let solved = solve(problem, &ends.best)?;
-            Ok((ends.tried, nearest(problem, solved, &ends.others, options.robust, &part)))
+            let solved = nearest(problem, solved, &ends.others, options.robust, &part);
+            Ok((ends.tried, within_range(problem, solved, options.robust, &part)))
         };
         let (mut starts, mut solved) = found(&mut problem)?;
         if let Some(why) = problem.overlapping(&solved.minimum.parameters) {
@@ -174,6 +176,7 @@ impl<'a> Posed<'a> {
         reasons.extend(of_sparse(branches, preset));
         let verdict = verdict(ending, what.errors.is_some(), &reasons);
         notes.extend(growth(&problem, u, &what, verdict));
+        notes.extend(of_starts(&starts, verdict));
         let residuals = beside(&problem, &solved.minimum.at.residuals, solved.scale);
         let doubt = approached.and_then(|approached| approached.doubt);
         let warnings = warned(evidence, (preset, branches), &reasons, &mut fitted).into_iter().chain(doubt);
@@ -210,6 +213,18 @@ impl<'a> Posed<'a> {
             parameters: fitted,
         })
     }
+}
+
+/// That no start came near the points, where the model does not describe them.
+fn of_starts(starts: &[Tried], verdict: Verdict) -> Option<String> {
+    let nearest = starts.iter().map(|start| start.distance).reduce(f64::min)?;
+    (verdict == Verdict::DoesNotDescribe && nearest > REACHED).then(|| {
+        format!(
+            "the nearest start ends {} sigma from the points on average: if the model is right, other first guesses lead nearer \
+             (give them with --set)",
+            short(nearest, 2)
+        )
+    })
 }
 
 /// How a fit ends whose minimization ended so, and of which one direction may be `unseen`.

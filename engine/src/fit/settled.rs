@@ -6,13 +6,20 @@ use super::prior::Prior;
 use super::problem::{FitProblem, FreeParameter, START, Target};
 use super::pulled::is_pulled;
 use super::solve::{HUBER, SolvedFit, solve};
+use super::track::LARGEST_MAUGIS;
 use crate::elementary::ln;
 use crate::measured::Segment;
+use crate::preset::Preset;
+use crate::preset::schema::RANGE_KEYS;
+use crate::problem::Groups;
 use crate::progress::Progress;
 use crate::units::{Quantity, number::said};
 
 /// Rounds of the last fit.
 pub(super) const ROUNDS: usize = 200;
+
+/// A `λ_M` beyond this share of the largest counts as the largest.
+pub(super) const AT_END: f64 = 0.8;
 
 /// The last fit, from `u`. Where `least` is given, σ of P is that of neighbours, but not below the second number; so is
 /// σ of x, not below the first, where that is finite.
@@ -60,6 +67,37 @@ pub(super) fn nearest(
         }
     }
     solved
+}
+
+/// The minimum where a range ended at the smallest one for which there is a path: there the other values did not follow. It is
+/// then held at a larger one, where they are best, unless that is farther from the points.
+pub(super) fn within_range(
+    problem: &FitProblem,
+    solved: SolvedFit,
+    robust: bool,
+    progress: &dyn Progress,
+) -> SolvedFit {
+    /// By how much the range is larger.
+    const FURTHER: f64 = 2.5;
+    let at_end = |j: &usize| {
+        let preset = problem.preset_at(&solved.minimum.parameters, Segment::Retraction);
+        let is_range = RANGE_KEYS.contains(&&*problem.parameters[*j].key());
+        let maugis = |preset: Preset| Groups::of(&preset.problem(), None, preset.cohesion()).maugis;
+        is_range && preset.and_then(maugis).is_some_and(|maugis| maugis > AT_END * LARGEST_MAUGIS)
+    };
+    let within = |j: usize| {
+        let mut u = solved.minimum.parameters.clone();
+        let is_strength = problem.parameters[j].key() == RANGE_KEYS[0];
+        let range = u.remove(j) + if is_strength { -ln(FURTHER) } else { ln(FURTHER) };
+        let SolvedFit { mut minimum, scale } =
+            solve(&problem.holding(j, range)?, &u, robust, ROUNDS, progress)?;
+        minimum.parameters.insert(j, range);
+        minimum.at = problem.evaluate(&minimum.parameters)?;
+        let cost = |u: &[f64]| problem.cost_at(u, HUBER * solved.scale);
+        let is_nearer = cost(&minimum.parameters)? < cost(&solved.minimum.parameters)?;
+        is_nearer.then_some(SolvedFit { minimum, scale })
+    };
+    (0..problem.parameters.len()).find(at_end).and_then(within).unwrap_or(solved)
 }
 
 /// The number of the contact radius at which an edge is pinned, where the points determine it worse than to a tenth, or

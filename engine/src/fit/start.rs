@@ -44,7 +44,7 @@ const ROUNDS: usize = 40;
 const ONE: f64 = 0.01;
 const OTHER: f64 = 0.2;
 /// Points at a larger mean distance, in σ, are not reached, whatever starts end there.
-const REACHED: f64 = 2.0;
+pub(super) const REACHED: f64 = 2.0;
 /// Ends whose mean distance is larger by less than this factor are told apart by all rows only.
 const AS_NEAR: f64 = 1.02;
 

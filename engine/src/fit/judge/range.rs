@@ -5,6 +5,7 @@ use super::super::options::letter;
 use super::super::path::Foot;
 use super::super::problem::{FitProblem, FreeParameter, Target};
 use super::super::scatter::Scatter;
+use super::super::settled::AT_END;
 use super::super::solve::{SolvedFit, solve};
 use super::super::start::start;
 use super::super::track::LARGEST_MAUGIS;
@@ -21,8 +22,6 @@ use nalgebra::DVector;
 /// The largest error of the logarithm of a tension or a range that still counts as found: its 95 % interval goes from a
 /// quarter of the value to four times it.
 const MOST: f64 = 0.7;
-/// A `λ_M` beyond this share of the largest counts as the largest.
-const AT_END: f64 = 0.8;
 /// χ² must be larger by this much for a range to be told from none: the bound for comparing two models, with one more
 /// value.
 const WORSE: f64 = 12.0;
@@ -33,10 +32,6 @@ const ROUNDS: usize = 100;
 /// Places on a path at which it is checked that one disc in one zone is the whole state.
 const LOOKED: u32 = 12;
 
-/// Why the points do not tell how far the adhesion reaches, where that is free; none where they do.
-///
-/// The errors hold next to the minimum. Farther off, where the range vanishes, there may be another minimum as deep,
-/// which is sought separately.
 /// A work of adhesion of the approach that has run off to zero: its logarithm has no minimum, and the errors of the others would
 /// take it as known.
 fn runs_off(problem: &FitProblem, u: &[f64]) -> Option<String> {
@@ -54,6 +49,10 @@ fn runs_off(problem: &FitProblem, u: &[f64]) -> Option<String> {
     })
 }
 
+/// Why the points do not tell how far the adhesion reaches, where that is free; none where they do.
+///
+/// The errors hold next to the minimum. Farther off, where the range vanishes, there may be another minimum as deep,
+/// which is sought separately.
 pub(in super::super) fn unseen(
     problem: &FitProblem,
     solved: &SolvedFit,
@@ -96,10 +95,22 @@ pub(in super::super) fn unseen(
     } else {
         format!("its error{at} is {} times its value", short(error, 2))
     };
+    let (key, units) = (problem.parameters[j].key(), &problem.preset.units);
+    // What the curve does not show, its beginning may.
+    let held = |range: f64| {
+        let value = if key == RANGE_KEYS[0] {
+            said(units, Quantity::Stress, preset.material.work_of_adhesion / range)
+        } else {
+            said(units, Quantity::Length, range)
+        };
+        let range = said(units, Quantity::Length, range);
+        format!(" at {value}, as on the approach the bodies attract from {range} before delta = 0 on")
+    };
     Some(format!(
-        "{}: {why}, so the points do not show how far the adhesion reaches: hold it, or set \
+        "{}: {why}, so the points of the curve do not show how far the adhesion reaches: hold it{}, or set \
          material.adhesion = \"short-range\", and compare both with --model short-range,dugdale",
-        letter(&problem.preset, &problem.parameters[j].key()),
+        letter(&problem.preset, &key),
+        problem.pulls_from(u).map_or_else(String::new, held)
     ))
 }
 

@@ -75,6 +75,32 @@ impl FitProblem {
         Some(inside.filter(|datum| is_off(datum)).map(beyond).collect())
     }
 
+    /// The rows of a branch that are not apart, on an approach that begins apart, before `x`.
+    fn early(&self, branch: usize, x: f64) -> Vec<&Datum> {
+        let of = |free: bool| {
+            self.data.iter().filter(move |datum| {
+                datum.branch == branch && datum.free == free && datum.segment == Segment::Approach
+            })
+        };
+        // An approach that begins in contact has touched before.
+        if of(true).next().is_none() {
+            return Vec::new();
+        }
+        of(false).filter(|datum| datum.point.x < x).collect()
+    }
+
+    /// How far before δ = 0 the rows of an approach begin to pull at `u`, which a range of adhesion explains; `None` where they
+    /// hardly do.
+    pub(super) fn pulls_from(&self, u: &[f64]) -> Option<f64> {
+        if self.abscissa == Abscissa::Radius {
+            return None;
+        }
+        let offset = self.instrument_at(u).offset;
+        let early = (0..self.branches()).map(|branch| self.early(branch, offset - BEFORE * self.sigma[0]));
+        let early = early.max_by_key(Vec::len).filter(|early| early.len() >= FEWEST)?;
+        early.iter().map(|datum| offset - datum.point.x).reduce(f64::max)
+    }
+
     /// Whether rows of an approach are apart where the model at `u` holds the bodies in contact.
     pub(in super::super) fn is_late(&self, u: &[f64], s: f64) -> bool {
         let late = self.late(u, [s.max(ROUNDING), BEFORE * self.sigma[0]]);
@@ -105,17 +131,11 @@ pub(super) fn of_touch(evidence: Evidence) -> Option<Reason> {
         return None;
     }
     let [s, margin] = margin(evidence)?;
-    let instrument = problem.instrument_at(&solved.minimum.parameters);
-    let apart = |x: f64| instrument.offset - x;
+    let u = &solved.minimum.parameters;
+    let (instrument, touches_at) = (problem.instrument_at(u), problem.touches_at(u)?);
+    let apart = |x: f64| touches_at - x;
     let of_branch = |branch: usize| -> Option<Reason> {
-        let of = |free: bool| {
-            problem.data.iter().filter(move |datum| {
-                datum.branch == branch && datum.free == free && datum.segment == Segment::Approach
-            })
-        };
-        // An approach that begins in contact has touched before.
-        of(true).next()?;
-        let early: Vec<_> = of(false).filter(|datum| apart(datum.point.x) > margin).collect();
+        let early = problem.early(branch, touches_at - margin);
         if early.len() < FEWEST {
             return None;
         }
@@ -128,12 +148,12 @@ pub(super) fn of_touch(evidence: Evidence) -> Option<Reason> {
         (t < -NO_CHANCE).then(|| {
             let sentence = format!(
                 "on the approach the bodies attract before they touch: {} rows, up to {} before the first \
-                 contact of the model, have the force {} ({} standard errors). The adhesion has a range, or \
-                 the force lags",
+                 contact of the model, have the force {} ({} standard errors). The adhesion {}, or the force lags",
                 early.len(),
                 said(units, Quantity::Length, most),
                 said(units, Quantity::Force, pull),
-                short(t.abs(), 2)
+                short(t.abs(), 2),
+                if problem.preset.cohesion().is_some() { "reaches further" } else { "has a range" }
             );
             Reason::new("touch", t, sentence)
         })
