@@ -44,7 +44,8 @@ fn recorded(home: &Home, asked: &[&str], (rows, noise): (u32, [f64; 2]), file: &
     let moments: Vec<Vec<f64>> = ended.out.lines().skip(1).map(cells).collect();
     let moments: Vec<[f64; 3]> =
         moments.iter().filter(|row| row[3] > 0.0).map(|row| [row[1], row[4], row[5]]).collect();
-    let [.., before, last] = &moments[..] else { panic!("{asked:?}") };
+    let last = moments.last().unwrap();
+    let before = moments.iter().rfind(|[time, ..]| *time < last[0]).unwrap();
     let speed = (before[1] - last[1]) / (last[0] - before[0]);
     let most = moments.iter().map(|[.., force]| force.abs()).fold(0.0, f64::max);
     let mut text = "time [s], approach [m], force [N]\n".to_owned();
@@ -60,6 +61,36 @@ fn recorded(home: &Home, asked: &[&str], (rows, noise): (u32, [f64; 2]), file: &
         writeln!(text, "{time}, {approach}, {force}").unwrap();
     }
     home.file(file, &text);
+}
+
+/// The rows of a record from its turn on.
+fn from_turn(text: &str) -> String {
+    let at = |line: &&str| line.split(',').nth(1).unwrap().trim().parse::<f64>().unwrap();
+    let rows: Vec<&str> = text.lines().skip(1).collect();
+    let top = (0..rows.len()).max_by(|a, b| at(&rows[*a]).total_cmp(&at(&rows[*b]))).unwrap();
+    [&["time [s], approach [m], force [N]"], &rows[top..]].concat().join("\n")
+}
+
+#[test]
+fn the_law_of_all_files_contradicts_rows_that_one_file_bends_to() {
+    let home = Home::new();
+    home.file("soft.toml", SOFT);
+    let files = ["0.3", "1", "3"].map(|rate| {
+        let steps = format!("path.steps=to 25um at {rate}um/s; apart at {rate}um/s");
+        let file = format!("{rate}.csv");
+        let start = ["soft.toml", "--set", "path.start_contact_radius=150um", "--set", &steps];
+        recorded(&home, &start, (400, [3e-9, 1e-3]), &file);
+        home.file(&file, &from_turn(&home.text(&file)));
+        file
+    });
+    let fit = |files: &[&str], more: &[&str]| {
+        let free = ["soft.toml", "--free", "E*,gamma,v0,edge.exponent,data.offset"];
+        let ended = home.run(&[&["fit"], files, &free, more].concat());
+        assert_eq!(ended.status, 0, "{}", ended.err);
+        ended.out.contains("rows of the retraction are left out: they contradict an edge that rests")
+    };
+    assert!(!fit(&[&files[0]], &[]));
+    assert!(fit(&files.each_ref().map(String::as_str), &["--together"]));
 }
 
 #[test]
@@ -155,11 +186,7 @@ fn rows_in_which_the_edge_still_closes_are_left_out() {
     let programme = ["--set", "path.steps=to 25um at 1um/s; apart at 1um/s"];
     let start = ["soft.toml", "--set", "path.start_contact_radius=150um"];
     recorded(&home, &[&start[..], &programme].concat(), (400, [3e-9, 4e-4]), "loop.csv");
-    let text = home.text("loop.csv");
-    let at = |line: &&str| line.split(',').nth(1).unwrap().trim().parse::<f64>().unwrap();
-    let rows: Vec<&str> = text.lines().skip(1).collect();
-    let top = (0..rows.len()).max_by(|a, b| at(&rows[*a]).total_cmp(&at(&rows[*b]))).unwrap();
-    home.file("back.csv", &[&["time [s], approach [m], force [N]"], &rows[top..]].concat().join("\n"));
+    home.file("back.csv", &from_turn(&home.text("loop.csv")));
     let fit = |file: &str, more: &[&str]| {
         let fit = [
             "fit",

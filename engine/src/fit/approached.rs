@@ -147,8 +147,9 @@ impl Approached {
 /// Whether the rows of `whole` that are not in `left` contradict an edge that rests, σ being `scale` times as large: by how much
 /// they raise χ², from a fit without them to one with them, or by the mean of a half of their residuals of one kind.
 fn contradicts(whole: &FitProblem, left: &FitProblem, [with, without]: [&[f64]; 2], scale: f64) -> bool {
-    /// The standard deviations that are not chance.
-    const SURE: f64 = 5.0;
+    /// The standard deviations that are hardly chance. Rows left out by chance cost a little precision, and rows kept against the
+    /// evidence put all values off.
+    const SURE: f64 = 3.5;
     let mut kept = whole.clone();
     kept.data.clone_from(&left.data);
     let costs = whole.cost_at(with, f64::INFINITY).zip(kept.cost_at(without, f64::INFINITY));

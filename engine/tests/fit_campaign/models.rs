@@ -11,7 +11,7 @@ use pulloff_engine::fit::reach::Reach;
 use pulloff_engine::fit::together::CurveFits;
 use pulloff_engine::fit::track::Mover;
 use pulloff_engine::fit::way::Way;
-use pulloff_engine::fit::{AdhesionModel, Together, Verdict, fit_models, fit_together};
+use pulloff_engine::fit::{AdhesionModel, Together, Verdict, fit_models, fit_own, fit_together};
 use pulloff_engine::measured::Abscissa;
 use pulloff_engine::preset::{Preset, Value, read};
 use pulloff_engine::problem::Groups;
@@ -108,6 +108,35 @@ fn adhesion_of_a_range_is_found_with_its_model() {
             told += usize::from(pair.told_apart && pair.models[0] == AdhesionModel::Dugdale);
         }
         assert!(told >= least, "{name}: {told}");
+    }
+}
+
+#[test]
+fn a_range_that_is_held_too_small_is_contradicted_by_the_first_touch() {
+    /// The tension that is held, over the true one, and whether rows attract before the model touches.
+    const HELD: [(f64, bool); 3] = [(0.9, false), (1.0, false), (8.0, true)];
+    let kind = DOUBTFUL.iter().find(|kind| kind.name == "Tabor 2").unwrap();
+    for number in 0..3 {
+        let made = made(kind, number);
+        let mut of = preset(&made);
+        for (key, value) in &made.truth {
+            if key.starts_with("material.") {
+                of.set(key, Value::Number(*value)).unwrap();
+            }
+        }
+        let material = &of.material;
+        let [e, gamma] = [material.effective_modulus, material.work_of_adhesion];
+        let radius = of.gap.radius_of_curvature().unwrap();
+        // Tabor's number is (Rγ²/(E*² h³))^(1/3), with h = γ/σ₀.
+        let tension = 2.0 * gamma / (radius * gamma * gamma / (e * e)).cbrt();
+        for (factor, is_early) in HELD {
+            let mut of = of.clone();
+            of.set("material.cohesive_strength", Value::Number(factor * tension)).unwrap();
+            of.set("material.adhesion", Value::Text("dugdale".to_owned())).unwrap();
+            let fit = fit_own(&of, &options(&made.free), &Unwatched).unwrap();
+            let touch = fit.reasons.iter().find(|reason| reason.kind == "touch");
+            assert_eq!(touch.is_some(), is_early, "{number} {factor}: {:?}", fit.reasons);
+        }
     }
 }
 
