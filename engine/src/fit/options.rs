@@ -137,6 +137,12 @@ pub enum FitError {
          the values that are held"
     )]
     NoStart,
+    /// Of adhesion with a range so small, which is given as `λ_M`, no path is followed.
+    #[error(
+        "the range of the adhesion is too small to be followed: lambda_M = {0} at the values of the preset, and at most {1} is possible. \
+         Give a lower material.cohesive_strength, or set material.adhesion = \"short-range\""
+    )]
+    SmallRange(String, f64),
     /// The fit was no longer wanted.
     #[error(transparent)]
     Stopped(#[from] Stopped),

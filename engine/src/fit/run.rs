@@ -23,13 +23,14 @@ use super::settled::{
 use super::shown::{KnownNoise, of_shown_noise};
 use super::solve::{SolvedFit, solve};
 use super::start::{REACHED, Tried, start};
+use super::track::LARGEST_MAUGIS;
 use super::uncertain::given;
 use super::verdict::{Reason, Verdict};
 use crate::elementary::{ln, pow};
 use crate::measured::branches::FLOOR;
 use crate::measured::{Abscissa, Branches, Noise, Origin, Segment};
 use crate::preset::{Preset, edge};
-use crate::problem::Start;
+use crate::problem::{Groups, Start};
 use crate::progress::{Progress, ProgressPart};
 use crate::units::Quantity;
 use crate::units::number::{said, short, significant};
@@ -87,7 +88,7 @@ impl<'a> Posed<'a> {
         let solve = |problem: &mut FitProblem, u: &[f64]| last(problem, u, options.robust, least, &part);
         let found = |problem: &mut FitProblem| -> Result<_, FitError> {
             let ends = start(problem, options.scan, options.robust, &ProgressPart::new(progress, [0.0, 0.8]))
-                .ok_or(FitError::NoStart)?;
+                .ok_or_else(|| no_start(&problem.preset))?;
             let solved = solve(problem, &ends.best)?;
             let solved = nearest(problem, solved, &ends.others, options.robust, &part);
             Ok((ends.tried, within_range(problem, solved, options.robust, &part)))
@@ -212,6 +213,15 @@ impl<'a> Posed<'a> {
             residuals,
             parameters: fitted,
         })
+    }
+}
+
+/// Why no start leads to a curve that reaches the points.
+fn no_start(preset: &Preset) -> FitError {
+    let maugis = Groups::of(&preset.problem(), None, preset.cohesion()).maugis;
+    match maugis.filter(|maugis| *maugis > LARGEST_MAUGIS) {
+        Some(maugis) => FitError::SmallRange(short(maugis, 3), LARGEST_MAUGIS),
+        None => FitError::NoStart,
     }
 }
 
