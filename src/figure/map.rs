@@ -175,28 +175,35 @@ pub fn taken(report: &MapReport, preset: &Preset, (x, y): (f64, f64)) -> Vec<(Ke
     assignment(&report.x, x).into_iter().chain(assignment(&report.y, y)).collect()
 }
 
-/// The number of snaps at a point of the figure, in words: where the counts around it differ, all that are possible. `None`
-/// for limit points over one number.
+/// The number of snaps at a point of the figure, in words: where the counts around it differ, from the least to the most of
+/// them. `None` for limit points over one number.
 pub fn count(report: &MapReport, preset: &Preset, (x, y): (f64, f64)) -> Option<String> {
+    /// As a share of an axis.
+    const ROUNDING: f64 = 1e-9;
     let counts = report.counts.as_ref()?;
     // The lines of the grid on either side.
     let around = |axis: &AxisReport, values: &[Option<f64>], place: f64| {
         let places = Places::of(axis, preset, report.control);
         let at: Vec<f64> = values.iter().map(|value| places.at(*value)).collect();
-        let below = at.iter().rposition(|at| *at <= place)?;
-        let above = at.iter().position(|at| *at >= place)?;
+        // The borders belong to the map, whatever the rounding.
+        let slack = ROUNDING * (at.last()? - at.first()?);
+        let below = at.iter().rposition(|at| *at <= place + slack)?;
+        let above = at.iter().position(|at| *at >= place - slack)?;
         Some([below, above])
     };
     let Some((columns, rows)) = around(&report.x, &counts.x, x).zip(around(&report.y, &counts.y, y)) else {
         return Some("outside the map".to_owned());
     };
     let cells = rows.into_iter().flat_map(|row| columns.map(|column| counts.snaps[row][column]));
-    let Some(found) = cells.collect::<Option<Vec<usize>>>() else { return Some("no path here".to_owned()) };
-    Some(match (found.iter().min()?, found.iter().max()?) {
-        (1, 1) => "1 snap".to_owned(),
-        (least, most) if least == most => format!("{least} snaps"),
-        (least, most) => format!("{least} to {most} snaps"),
-    })
+    let cells: Vec<Option<usize>> = cells.collect();
+    let found = || cells.iter().flatten();
+    let said = match (found().min(), found().max()) {
+        (Some(1), Some(1)) => "1 snap".to_owned(),
+        (Some(least), Some(most)) if least == most => format!("{least} snaps"),
+        (Some(least), Some(most)) => format!("{least} to {most} snaps"),
+        _ => return Some("no path here".to_owned()),
+    };
+    Some(if cells.contains(&None) { format!("{said}, or no path") } else { said })
 }
 
 /// A number rounded to four digits.

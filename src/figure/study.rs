@@ -6,7 +6,7 @@ use super::subject::Subject;
 use crate::explorer::Axes;
 use crate::explorer::studies::{StudyData, StudyOutcome, number};
 use pulloff_engine::preset::{Preset, Row};
-use pulloff_engine::report::number::{significant, with_unit};
+use pulloff_engine::report::number::{short, significant, with_unit};
 use pulloff_engine::sweep::ensemble::quantiles;
 use pulloff_engine::sweep::quantity::Under;
 use pulloff_engine::sweep::{Cell, QuantityColumn};
@@ -254,7 +254,7 @@ pub fn reading(data: &StudyData, preset: &Preset, axes: Axes, x: f64) -> Option<
     let row = row(data, preset)?;
     let (at, value) = taken(data, preset, x)?;
     let shown = row.shown(units, value);
-    let value = shown.text(&significant(shown.number, 5), false);
+    let value = shown.text(&short(shown.number, 5), false);
     let found = match data.outcomes.get(at)? {
         StudyOutcome::Waits => "is being computed".to_owned(),
         StudyOutcome::Missing(why) => format!("none: {why}"),

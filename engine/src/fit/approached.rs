@@ -150,6 +150,8 @@ fn contradicts(whole: &FitProblem, left: &FitProblem, [with, without]: [&[f64]; 
     /// The standard deviations that are hardly chance. Rows left out by chance cost a little precision, and rows kept against the
     /// evidence put all values off.
     const SURE: f64 = 3.5;
+    /// A row counts as at most this many.
+    const CLIPPED: f64 = 4.0;
     let mut kept = whole.clone();
     kept.data.clone_from(&left.data);
     let costs = whole.cost_at(with, f64::INFINITY).zip(kept.cost_at(without, f64::INFINITY));
@@ -162,7 +164,9 @@ fn contradicts(whole: &FitProblem, left: &FitProblem, [with, without]: [&[f64]; 
     // Across the curve, and along the radius where that is measured, too.
     let of_part = |part: usize| -> Vec<f64> {
         let all = residuals.iter().flat_map(|all| whole.data.iter().zip(all.iter().skip(part).step_by(per)));
-        all.filter(|(datum, _)| !is_kept.contains(&datum.point.at)).map(|(_, r)| r / scale).collect()
+        all.filter(|(datum, _)| !is_kept.contains(&datum.point.at))
+            .map(|(_, r)| (r / scale).clamp(-CLIPPED, CLIPPED))
+            .collect()
     };
     let is_off = |half: &[f64]| half.iter().sum::<f64>().abs() > SURE * (half.len() as f64).sqrt();
     let any_off = |off: Vec<f64>| off.chunks(off.len().div_ceil(2).max(1)).any(is_off);

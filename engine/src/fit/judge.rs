@@ -23,7 +23,7 @@ mod spring;
 mod touch;
 mod untold;
 
-pub(super) use range::unseen;
+pub(super) use range::{of_first_pull, unseen};
 pub(super) use scores::BRANCHES;
 pub(super) use spring::of_spring;
 

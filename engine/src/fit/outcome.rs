@@ -101,8 +101,9 @@ impl Fit {
             return None;
         }
         let radius = said(&self.preset.units, Quantity::Length, radius);
-        let is_at_given_speed = of_radius && self.preset.path.control == Control::Force;
-        let [values, shown] = match (is_free(edge::REFERENCE_SPEED) && !is_at_given_speed, of_radius) {
+        // A force, or a spring, does not go with δ.
+        let goes = !of_radius || self.preset.path.control == Control::Displacement;
+        let [values, shown] = match (goes && is_free(edge::REFERENCE_SPEED), of_radius) {
             (false, false) => ["E* and γ", "E*√R and γR"],
             (false, true) => ["E* and γ", "E*/R and γE*"],
             (true, false) => ["E*, γ and v0", "E*√R, γR and v0/√R"],

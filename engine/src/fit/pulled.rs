@@ -111,7 +111,7 @@ fn unit_of(preset: &Preset, reduced: &Reduced, held: Control) -> Option<[f64; 2]
 pub(super) fn rest_behind(preset: &Preset, length: f64, turn: f64, [rate, hold]: [f64; 2]) -> Option<f64> {
     /// The approach is followed from the first of these shares of the contact radius from which it can be: what was before is
     /// forgotten. On waves a closing edge may touch ahead until shortly before the turn.
-    const FROM: [f64; 7] = [0.3, 0.5, 0.7, 0.85, 0.93, 0.97, 1.0];
+    const FROM: [f64; 6] = [0.3, 0.5, 0.7, 0.85, 0.93, 0.97];
     let reduced = preset.problem().reduced_by(preset.gap.length().unwrap_or(length));
     let held = preset.path.control.in_units(reduced.units.stiffness);
     let table = case::table(&preset.gap, &reduced, 1.0, &Printer::reduced(), &Unwatched).ok()?;

@@ -5,7 +5,9 @@ use super::bias::of_bias;
 use super::determined::{Determined, determined};
 use super::fitted::{Fitted, too_small, unmoved, values};
 use super::intervals::intervals;
-use super::judge::{Evidence, doubts, extent, of_hidden, of_sparse, of_spring, of_unclear, reasons, unseen};
+use super::judge::{
+    Evidence, doubts, extent, of_first_pull, of_hidden, of_sparse, of_spring, of_unclear, reasons, unseen,
+};
 use super::laid::laid;
 use super::least_squares::Ending;
 use super::options::{FitError, Options};
@@ -153,6 +155,8 @@ impl<'a> Posed<'a> {
         let is_unseen = unseen.is_some();
         if let Some(direction) = unseen {
             what = what.without_errors(direction);
+        } else if let Some(direction) = &mut what.direction {
+            direction.extend(of_first_pull(&problem, &solved).map(|said| format!("; {said}")));
         }
         let priors = given(&problem, &what.shares, &mut notes);
         let real = problem.real(&solved.minimum.at.residuals);
@@ -225,10 +229,10 @@ fn no_start(preset: &Preset) -> FitError {
     }
 }
 
-/// That no start came near the points, where the model does not describe them.
+/// That no start came near the points.
 fn of_starts(starts: &[Tried], verdict: Verdict) -> Option<String> {
     let nearest = starts.iter().map(|start| start.distance).reduce(f64::min)?;
-    (verdict == Verdict::DoesNotDescribe && nearest > REACHED).then(|| {
+    (verdict != Verdict::Describes && nearest > REACHED).then(|| {
         format!(
             "the nearest start ends {} sigma from the points on average: if the model is right, other first guesses lead nearer \
              (give them with --set)",

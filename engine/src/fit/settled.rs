@@ -1,6 +1,6 @@
 //! The last fit, and again where its residuals show another noise than was assumed.
 
-use super::least_squares::LeastSquares;
+use super::least_squares::{Ending, LeastSquares};
 use super::options::FitError;
 use super::prior::Prior;
 use super::problem::{FitProblem, FreeParameter, START, Target};
@@ -92,6 +92,8 @@ pub(super) fn within_range(
         let SolvedFit { mut minimum, scale } =
             solve(&problem.holding(j, range)?, &u, robust, ROUNDS, progress)?;
         minimum.parameters.insert(j, range);
+        // Over the range it is no minimum.
+        minimum.ending = Ending::Rounds;
         minimum.at = problem.evaluate(&minimum.parameters)?;
         let cost = |u: &[f64]| problem.cost_at(u, HUBER * solved.scale);
         let is_nearer = cost(&minimum.parameters)? < cost(&solved.minimum.parameters)?;

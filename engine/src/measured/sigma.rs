@@ -6,12 +6,12 @@
 //! σ_x = max(last digit, √(Σ (x_{i−1} − 2x_i + x_{i+1})² / 6n))        both at least 1e-4 of their range
 //! ```
 //!
-//! Outliers count in the sums only up to a bound. Where x, P and s are all measured, each in contact shows its noise over
+//! The sums leave out what lies far beyond the median: outliers, jumps, ringing. Where x, P and s are all measured, each in contact shows its noise over
 //! the number of the row, the time, and the other two: the least of these holds least of the noise of another column, and
 //! of uneven steps.
 
 use super::free::OrderedBranch;
-use super::noise::{FLOOR, Noise, Origin, scatter_over, variance};
+use super::noise::{FLOOR, Noise, Origin, median, scatter_over};
 use super::points::MeasuredPoint;
 use super::speed::noise as noise_in_order;
 use crate::elementary::hypot;
@@ -90,6 +90,16 @@ impl Neighbours {
     }
 }
 
+/// The mean square of normal differences, without those that lie far beyond their median, or beyond a few steps of a converter,
+/// whose median may be 0; `None` of none.
+fn mean_square(differences: &[f64], step: f64) -> Option<f64> {
+    /// Standard deviations, beyond which one normal value in two thousand lies.
+    const FAR: f64 = 3.5;
+    let bound = FAR * (median(differences.iter().map(|x| x.abs()).collect())? / 0.6745).max(step);
+    let kept: Vec<f64> = differences.iter().copied().filter(|x| bound == 0.0 || x.abs() <= bound).collect();
+    Some(kept.iter().map(|x| x * x).sum::<f64>() / kept.len() as f64)
+}
+
 /// σ of x, P and s, the rows in the order of the file.
 pub(super) fn noise(
     list: &[OrderedBranch],
@@ -108,10 +118,10 @@ pub(super) fn noise(
     // Few rows apart show nothing: those in contact say more.
     let is_known = forces.len() >= FEWEST_APART || neighbours.is_none();
     let step = converter.unwrap_or(0.0);
-    let apart = variance(&forces).map(|square| (square / 2.0).sqrt()).filter(|_| is_known);
+    let apart = mean_square(&forces, step).map(|square| (square / 2.0).sqrt()).filter(|_| is_known);
     // The scatter of radii over forces includes that of the force: the two cannot be separated if neither is known.
     let known = apart.is_some() || given[1].is_some() || has_clock;
-    let of_ways = || variance(&ways).map(|square| (square / 6.0).sqrt());
+    let of_ways = || mean_square(&ways, 0.0).map(|square| (square / 6.0).sqrt());
     let ways = if of_radius { radius.filter(|_| known) } else { of_ways() };
     let ways_in_contact = ways_in_contact.into_iter().reduce(f64::min);
     let of = |found: Option<f64>, origin| found.map(|found| (found, origin));

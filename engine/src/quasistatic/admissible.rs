@@ -36,7 +36,7 @@ use std::sync::Arc;
 /// A formula is searched out to this many of its lengths.
 const LENGTHS: f64 = 10.0;
 
-/// The nearest crest is looked for up to this multiple of s or this many waves outside the edge, whichever is more, but
+/// The gap outside is drawn, and the nearest crest is looked for, up to this multiple of s or this many waves outside the edge, whichever is more, but
 /// over no more waves than the last of these: the gap at a crest is a sum over all waves up to there.
 const FARTHEST: f64 = 4.0;
 const FARTHEST_WAVES: f64 = 3.0;

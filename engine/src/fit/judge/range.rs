@@ -16,7 +16,7 @@ use crate::preset::schema::RANGE_KEYS;
 use crate::problem::{Adhesion, Groups};
 use crate::progress::Progress;
 use crate::units::Quantity;
-use crate::units::number::{said, short};
+use crate::units::number::{said, short, with_unit};
 use nalgebra::DVector;
 
 /// The largest error of the logarithm of a tension or a range that still counts as found: its 95 % interval goes from a
@@ -95,22 +95,31 @@ pub(in super::super) fn unseen(
     } else {
         format!("its error{at} is {} times its value", short(error, 2))
     };
-    let (key, units) = (problem.parameters[j].key(), &problem.preset.units);
-    // What the curve does not show, its beginning may.
-    let held = |range: f64| {
-        let value = if key == RANGE_KEYS[0] {
-            said(units, Quantity::Stress, preset.material.work_of_adhesion / range)
-        } else {
-            said(units, Quantity::Length, range)
-        };
-        let range = said(units, Quantity::Length, range);
-        format!(" at {value}, as on the approach the bodies attract from {range} before delta = 0 on")
-    };
+    let first = of_first_pull(problem, solved).map_or_else(String::new, |said| format!(" ({said})"));
     Some(format!(
-        "{}: {why}, so the points of the curve do not show how far the adhesion reaches: hold it{}, or set \
+        "{}: {why}, so the points of the curve do not show how far the adhesion reaches: hold it{first}, or set \
          material.adhesion = \"short-range\", and compare both with --model short-range,dugdale",
-        letter(&problem.preset, &key),
-        problem.pulls_from(u).map_or_else(String::new, held)
+        letter(&problem.preset, &problem.parameters[j].key()),
+    ))
+}
+
+/// The range of the adhesion that the beginning of an approach shows, where that is free: what the curve does not show, its
+/// beginning may. `None` where it shows none.
+pub(in super::super) fn of_first_pull(problem: &FitProblem, solved: &SolvedFit) -> Option<String> {
+    let key = problem.parameters.iter().map(FreeParameter::key).find(|key| RANGE_KEYS.contains(&&**key))?;
+    let u = &solved.minimum.parameters;
+    let preset = problem.preset_at(u, Segment::Retraction)?;
+    let range = problem.pulls_from(u, solved.scale)?;
+    let about = |quantity, value| with_unit(&problem.preset.units, quantity, value, true, |x| short(x, 2));
+    let length = about(Quantity::Length, range);
+    let value = if key == RANGE_KEYS[0] {
+        about(Quantity::Stress, preset.material.work_of_adhesion / range)
+    } else {
+        length.clone()
+    };
+    let name = letter(&problem.preset, &key);
+    Some(format!(
+        "on the approach the bodies attract from about {length} before delta = 0 on, as with {name} = {value}"
     ))
 }
 

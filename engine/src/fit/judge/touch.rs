@@ -89,16 +89,24 @@ impl FitProblem {
         of(false).filter(|datum| datum.point.x < x).collect()
     }
 
-    /// How far before δ = 0 the rows of an approach begin to pull at `u`, which a range of adhesion explains; `None` where they
-    /// hardly do.
-    pub(super) fn pulls_from(&self, u: &[f64]) -> Option<f64> {
-        if self.abscissa == Abscissa::Radius {
+    /// How far before δ = 0 the rows of an approach begin to pull at `u`, `s` being the noise in σ, which a range of adhesion
+    /// explains; `None` where they hardly do, and where the place of δ = 0 is wrong.
+    pub(super) fn pulls_from(&self, u: &[f64], s: f64) -> Option<f64> {
+        if self.abscissa == Abscissa::Radius || self.is_late(u, s) {
             return None;
         }
-        let offset = self.instrument_at(u).offset;
-        let early = (0..self.branches()).map(|branch| self.early(branch, offset - BEFORE * self.sigma[0]));
-        let early = early.max_by_key(Vec::len).filter(|early| early.len() >= FEWEST)?;
-        early.iter().map(|datum| offset - datum.point.x).reduce(f64::max)
+        let at = self.instrument_at(u);
+        let pulls = |datum: &&Datum| {
+            datum.point.force - at.baseline - at.tilt * datum.point.x < -BEFORE * s * self.sigma[1]
+        };
+        let early = |branch| -> Vec<&Datum> {
+            self.early(branch, at.offset - BEFORE * self.sigma[0]).into_iter().filter(pulls).collect()
+        };
+        let early = (0..self.branches()).map(early).max_by_key(Vec::len)?;
+        let mut ways: Vec<f64> = early.iter().map(|datum| at.offset - datum.point.x).collect();
+        ways.sort_unstable_by(|a, b| b.total_cmp(a));
+        // The farthest row is that with the largest noise of x.
+        ways.get(FEWEST - 1).copied()
     }
 
     /// Whether rows of an approach are apart where the model at `u` holds the bodies in contact.
