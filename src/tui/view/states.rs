@@ -40,13 +40,13 @@ pub fn draw(frame: &mut Frame<'_>, area: Rect, app: &App, selected: bool) {
     let first = first(path.len(), chosen, rows);
     let critical = divisor(&path);
     let largest = largest(&path);
-    let mut lines =
-        vec![Line::styled(theme.whole_words(&theme.text(&head(model, critical)), room), theme.dim())];
+    let head = format!(" {}", laid(&head(model, critical), room));
+    let mut lines = vec![Line::styled(theme.whole_words(&theme.text(&head), room), theme.dim())];
     lines.extend(path.iter().enumerate().skip(first).take(rows).map(|(i, (_, node))| {
         let before = i.checked_sub(1).and_then(|before| path.get(before)).map(|(_, node)| *node);
         let here = if i + 1 == path.len() { " @" } else { "" };
         let mark = if i == chosen && selected { '>' } else { ' ' };
-        let text = format!("{mark}{}{here}", row(node, before, critical, largest));
+        let text = format!("{mark}{}{here}", laid(&row(node, before, critical, largest), room));
         let style = if i == chosen && selected { theme.selection() } else { Style::new() };
         Line::styled(theme.whole_words(&theme.text(&text), room), style)
     }));
@@ -68,19 +68,37 @@ pub fn line_at(model: &Model, area: Rect, row: u16) -> Option<usize> {
     (below < rows && line < count).then_some(line)
 }
 
+/// The columns: step, what was done, δ, P, s, crest, and what was lost and changed.
+type Columns = [String; 7];
+
+/// Their widths, the last one the least that it needs.
+const WIDTHS: [usize; 7] = [5, 9, 10, 8, 10, 5, 9];
+
+/// A line of as many columns as there is room for: the crest is left out first, then s.
+fn laid(cells: &Columns, room: usize) -> String {
+    const FIRST_LEFT_OUT: [usize; 2] = [5, 4];
+    let width = |without: &[usize]| -> usize {
+        (0..WIDTHS.len()).filter(|at| !without.contains(at)).map(|at| WIDTHS[at] + 1).sum()
+    };
+    let count = (0..FIRST_LEFT_OUT.len()).find(|count| width(&FIRST_LEFT_OUT[..*count]) <= room);
+    let left_out = &FIRST_LEFT_OUT[..count.unwrap_or(FIRST_LEFT_OUT.len())];
+    let cell = |at: usize| match at {
+        1 => format!("{:<1$}", cells[at], WIDTHS[at]),
+        6 => cells[at].clone(),
+        _ => format!("{:>1$}", cells[at], WIDTHS[at]),
+    };
+    let shown: Vec<String> = (0..WIDTHS.len()).filter(|at| !left_out.contains(at)).map(cell).collect();
+    shown.join(" ").trim_end().to_owned()
+}
+
 /// The column heads, with the units of the preset.
-fn head(model: &Model, critical: Option<f64>) -> String {
+fn head(model: &Model, critical: Option<f64>) -> Columns {
     let units = &model.preset.units;
     let [length, force] = [Quantity::Length, Quantity::Force]
         .map(|quantity| units.unit(quantity).map_or_else(String::new, |unit| format!(" {unit}")));
     let force = if critical.is_some() { "P/Pc".to_owned() } else { format!("P{force}") };
-    format!(
-        " step {:<9} {:>10} {force:>8} {:>10} {:>5}  lost, changed",
-        "",
-        format!("δ{length}"),
-        format!("s{length}"),
-        "crest"
-    )
+    let [step, kind, crest, last] = ["step", "", "crest", "lost"].map(str::to_owned);
+    [step, kind, format!("δ{length}"), force, format!("s{length}"), crest, last]
 }
 
 /// `P_c`, by which forces are divided if all states have the same.
@@ -101,9 +119,9 @@ fn largest(path: &[(usize, &Node)]) -> [f64; 3] {
     })
 }
 
-/// A state in one line; `before` is the previous state, forces are divided by `critical`, and the columns of δ, P and s
+/// The cells of a state; `before` is the previous state, forces are divided by `critical`, and the columns of δ, P and s
 /// go up to `largest`.
-fn row(node: &Node, before: Option<&Node>, critical: Option<f64>, largest: [f64; 3]) -> String {
+fn row(node: &Node, before: Option<&Node>, critical: Option<f64>, largest: [f64; 3]) -> Columns {
     let setting = &node.setting;
     let state = node.seen();
     let units = &setting.preset.units;
@@ -136,12 +154,6 @@ fn row(node: &Node, before: Option<&Node>, critical: Option<f64>, largest: [f64;
     if !node.is_apart() && !node.admissibility.holds {
         said.push("!".to_owned());
     }
-    let kind = kind_name(&node.kind);
-    let line = format!(
-        "{:>5} {kind:<9} {:>10} {force:>8} {radius:>10} {crest:>5}  {}",
-        node.step,
-        length(state.approach, largest[0]),
-        said.join(", ")
-    );
-    line.trim_end().to_owned()
+    let (step, kind) = (node.step.to_string(), kind_name(&node.kind).to_owned());
+    [step, kind, length(state.approach, largest[0]), force, radius, crest, said.join(", ")]
 }

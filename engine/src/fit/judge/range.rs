@@ -110,7 +110,8 @@ pub(in super::super) fn of_first_pull(problem: &FitProblem, solved: &SolvedFit) 
     let u = &solved.minimum.parameters;
     let preset = problem.preset_at(u, Segment::Retraction)?;
     let range = problem.pulls_from(u, solved.scale)?;
-    let about = |quantity, value| with_unit(&problem.preset.units, quantity, value, true, |x| short(x, 2));
+    let rounded = |x: f64| format!("{x:.1e}").parse().map_or_else(|_| short(x, 2), |x| short(x, 2));
+    let about = |quantity, value| with_unit(&problem.preset.units, quantity, value, true, rounded);
     let length = about(Quantity::Length, range);
     let value = if key == RANGE_KEYS[0] {
         about(Quantity::Stress, preset.material.work_of_adhesion / range)

@@ -102,11 +102,8 @@ impl FitProblem {
         let early = |branch| -> Vec<&Datum> {
             self.early(branch, at.offset - BEFORE * self.sigma[0]).into_iter().filter(pulls).collect()
         };
-        let early = (0..self.branches()).map(early).max_by_key(Vec::len)?;
-        let mut ways: Vec<f64> = early.iter().map(|datum| at.offset - datum.point.x).collect();
-        ways.sort_unstable_by(|a, b| b.total_cmp(a));
-        // The farthest row is that with the largest noise of x.
-        ways.get(FEWEST - 1).copied()
+        let early = (0..self.branches()).map(early).max_by_key(Vec::len).filter(|of| of.len() >= FEWEST)?;
+        early.iter().map(|datum| at.offset - datum.point.x).reduce(f64::max)
     }
 
     /// Whether rows of an approach are apart where the model at `u` holds the bodies in contact.
