@@ -195,6 +195,12 @@ impl<'a> Joint<'a> {
         SolvedFit { minimum: Minimum { parameters, at, cost, ..minimum.clone() }, scale }
     }
 
+    /// Each curve at the minimum of all.
+    fn all_solved(&self, minimum: &Minimum) -> Vec<SolvedFit> {
+        let blocks = self.blocks();
+        self.curves.iter().zip(&blocks).map(|of| self.solved(of, minimum)).collect()
+    }
+
     /// Half the sum of squares of the points of a curve.
     fn cost(&self, curve: &JoinedCurve, solved: &SolvedFit) -> f64 {
         let residuals = DVector::from_vec(curve.problem.real(&solved.minimum.at.residuals));
@@ -279,14 +285,10 @@ pub fn fit_together(
         least(&Joint::of(posed, options.robust), progress).ok_or((0, FitError::NoStart))
     };
     let mut minimum = least_of(&posed)?;
-    let under_law = |posed: &[Posed<'_>], minimum: &Minimum| -> Vec<SolvedFit> {
-        let joint = Joint::of(posed, options.robust);
-        let blocks = joint.blocks();
-        joint.curves.iter().zip(&blocks).map(|of| joint.solved(of, minimum)).collect()
-    };
+    let under_law = Joint::of(&posed, options.robust).all_solved(&minimum);
     let mut has_left_out = false;
-    for (run, under) in under_law(&posed, &minimum).iter().enumerate() {
-        has_left_out |= posed[run].leaves_out_closing(under, progress);
+    for (posed, under) in posed.iter_mut().zip(&under_law) {
+        has_left_out |= posed.leaves_out_closing(under, progress);
     }
     if has_left_out {
         minimum = least_of(&posed)?;
@@ -299,7 +301,7 @@ pub fn fit_together(
         minimum = least_of(&posed)?;
     }
     let joint = Joint::of(&posed, options.robust);
-    let solved = under_law(&posed, &minimum);
+    let solved = joint.all_solved(&minimum);
     let scatters: Vec<Scatter> =
         joint.curves.iter().zip(&solved).map(|(curve, solved)| curve.problem.scatter(solved)).collect();
     let known = known(&joint, (&solved, &scatters), &minimum);

@@ -68,14 +68,14 @@ pub fn line_at(model: &Model, area: Rect, row: u16) -> Option<usize> {
     (below < rows && line < count).then_some(line)
 }
 
-/// The columns: step, what was done, δ, P, s, crest, and what was lost and changed.
-type Columns = [String; 7];
+/// The cells of a line: step, what was done, δ, P, s, crest, and what was lost and changed.
+type WalkCells = [String; 7];
 
 /// Their widths, the last one the least that it needs.
 const WIDTHS: [usize; 7] = [5, 9, 10, 8, 10, 5, 9];
 
 /// A line of as many columns as there is room for: the crest is left out first, then s.
-fn laid(cells: &Columns, room: usize) -> String {
+fn laid(cells: &WalkCells, room: usize) -> String {
     const FIRST_LEFT_OUT: [usize; 2] = [5, 4];
     let width = |without: &[usize]| -> usize {
         (0..WIDTHS.len()).filter(|at| !without.contains(at)).map(|at| WIDTHS[at] + 1).sum()
@@ -92,7 +92,7 @@ fn laid(cells: &Columns, room: usize) -> String {
 }
 
 /// The column heads, with the units of the preset.
-fn head(model: &Model, critical: Option<f64>) -> Columns {
+fn head(model: &Model, critical: Option<f64>) -> WalkCells {
     let units = &model.preset.units;
     let [length, force] = [Quantity::Length, Quantity::Force]
         .map(|quantity| units.unit(quantity).map_or_else(String::new, |unit| format!(" {unit}")));
@@ -121,7 +121,7 @@ fn largest(path: &[(usize, &Node)]) -> [f64; 3] {
 
 /// The cells of a state; `before` is the previous state, forces are divided by `critical`, and the columns of δ, P and s
 /// go up to `largest`.
-fn row(node: &Node, before: Option<&Node>, critical: Option<f64>, largest: [f64; 3]) -> Columns {
+fn row(node: &Node, before: Option<&Node>, critical: Option<f64>, largest: [f64; 3]) -> WalkCells {
     let setting = &node.setting;
     let state = node.seen();
     let units = &setting.preset.units;
