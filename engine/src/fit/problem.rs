@@ -183,6 +183,11 @@ impl FitProblem {
         self.parameters.len() - self.priors.len()
     }
 
+    /// The number of the tension or the range of adhesion, where that is free.
+    pub(super) fn free_range(&self) -> Option<usize> {
+        self.parameters.iter().position(|parameter| RANGE_KEYS.contains(&&*parameter.key()))
+    }
+
     /// Residuals of one attached point.
     pub fn per_point(&self) -> usize {
         if self.space { 2 } else { 1 }

@@ -25,14 +25,14 @@ use super::settled::{
 use super::shown::{KnownNoise, of_shown_noise};
 use super::solve::{SolvedFit, solve};
 use super::start::{REACHED, Tried, start};
-use super::track::LARGEST_MAUGIS;
+use super::track::{LARGEST_MAUGIS, maugis};
 use super::uncertain::given;
 use super::verdict::{Reason, Verdict};
 use crate::elementary::{ln, pow};
 use crate::measured::branches::FLOOR;
 use crate::measured::{Abscissa, Branches, Noise, Origin, Segment};
 use crate::preset::{Preset, edge};
-use crate::problem::{Groups, Start};
+use crate::problem::Start;
 use crate::progress::{Progress, ProgressPart};
 use crate::units::Quantity;
 use crate::units::number::{said, short, significant};
@@ -151,13 +151,8 @@ impl<'a> Posed<'a> {
     ) -> Result<Fit, FitError> {
         let Self { preset, branches, options, problem, starts, solved, mut notes, approached } = self;
         let u = &solved.minimum.parameters;
-        let unseen = unseen(&problem, &solved, (&what, &scatter), options.robust, progress);
-        let is_unseen = unseen.is_some();
-        if let Some(direction) = unseen {
-            what = what.without_errors(direction);
-        } else if let Some(direction) = &mut what.direction {
-            direction.extend(of_first_pull(&problem, &solved).map(|said| format!("; {said}")));
-        }
+        let is_unseen;
+        (what, is_unseen) = with_range(&problem, &solved, (what, &scatter), options.robust, progress);
         let priors = given(&problem, &what.shares, &mut notes);
         let real = problem.real(&solved.minimum.at.residuals);
         let rows = real.len() as f64 / scatter.correlation.rows();
@@ -220,21 +215,38 @@ impl<'a> Posed<'a> {
     }
 }
 
+/// What the points determine, once it is known whether they show a range of adhesion that is free; and whether they do not.
+fn with_range(
+    problem: &FitProblem,
+    solved: &SolvedFit,
+    (mut what, scatter): (Determined, &Scatter),
+    robust: bool,
+    progress: &dyn Progress,
+) -> (Determined, bool) {
+    if let Some(direction) = unseen(problem, solved, (&what, scatter), robust, progress) {
+        return (what.without_errors(direction), true);
+    }
+    if let Some(direction) = &mut what.direction {
+        direction.extend(of_first_pull(problem, solved).map(|said| format!("; {said}")));
+    }
+    (what, false)
+}
+
 /// Why no start leads to a curve that reaches the points.
 fn no_start(preset: &Preset) -> FitError {
-    let maugis = Groups::of(&preset.problem(), None, preset.cohesion()).maugis;
-    match maugis.filter(|maugis| *maugis > LARGEST_MAUGIS) {
+    match maugis(preset).filter(|maugis| *maugis > LARGEST_MAUGIS) {
         Some(maugis) => FitError::SmallRange(short(maugis, 3), LARGEST_MAUGIS),
         None => FitError::NoStart,
     }
 }
 
-/// That no start came near the points.
+/// That no start came near the points, where a fit that has come to its end does not describe them or is not determined.
 fn of_starts(starts: &[Tried], verdict: Verdict) -> Option<String> {
     let nearest = starts.iter().map(|start| start.distance).reduce(f64::min)?;
-    (verdict != Verdict::Describes && nearest > REACHED).then(|| {
+    let is_in_doubt = matches!(verdict, Verdict::DoesNotDescribe | Verdict::NotDetermined);
+    (is_in_doubt && nearest > REACHED).then(|| {
         format!(
-            "the nearest start ends {} sigma from the points on average: if the model is right, other first guesses lead nearer \
+            "the nearest start ends {} sigma from the points on average: if the model is right, other first guesses may lead nearer \
              (give them with --set)",
             short(nearest, 2)
         )

@@ -6,20 +6,15 @@ use super::prior::Prior;
 use super::problem::{FitProblem, FreeParameter, START, Target};
 use super::pulled::is_pulled;
 use super::solve::{HUBER, SolvedFit, solve};
-use super::track::LARGEST_MAUGIS;
+use super::track::{END_MAUGIS, maugis};
 use crate::elementary::ln;
 use crate::measured::Segment;
-use crate::preset::Preset;
 use crate::preset::schema::RANGE_KEYS;
-use crate::problem::Groups;
 use crate::progress::Progress;
 use crate::units::{Quantity, number::said};
 
 /// Rounds of the last fit.
 pub(super) const ROUNDS: usize = 200;
-
-/// A `λ_M` beyond this share of the largest counts as the largest.
-pub(super) const AT_END: f64 = 0.8;
 
 /// The last fit, from `u`. Where `least` is given, σ of P is that of neighbours, but not below the second number; so is
 /// σ of x, not below the first, where that is finite.
@@ -79,11 +74,9 @@ pub(super) fn within_range(
 ) -> SolvedFit {
     /// By how much the range is larger.
     const FURTHER: f64 = 2.5;
-    let at_end = |j: &usize| {
+    let is_at_end = |_: &usize| {
         let preset = problem.preset_at(&solved.minimum.parameters, Segment::Retraction);
-        let is_range = RANGE_KEYS.contains(&&*problem.parameters[*j].key());
-        let maugis = |preset: Preset| Groups::of(&preset.problem(), None, preset.cohesion()).maugis;
-        is_range && preset.and_then(maugis).is_some_and(|maugis| maugis > AT_END * LARGEST_MAUGIS)
+        preset.and_then(|preset| maugis(&preset)).is_some_and(|maugis| maugis > END_MAUGIS)
     };
     let within = |j: usize| {
         let mut u = solved.minimum.parameters.clone();
@@ -99,7 +92,7 @@ pub(super) fn within_range(
         let is_nearer = cost(&minimum.parameters)? < cost(&solved.minimum.parameters)?;
         is_nearer.then_some(SolvedFit { minimum, scale })
     };
-    (0..problem.parameters.len()).find(at_end).and_then(within).unwrap_or(solved)
+    problem.free_range().filter(is_at_end).and_then(within).unwrap_or(solved)
 }
 
 /// The number of the contact radius at which an edge is pinned, where the points determine it worse than to a tenth, or

@@ -168,14 +168,14 @@ impl FitProblem {
         self.preset.cohesion()?;
         let own: Vec<f64> =
             self.parameters.iter().map(|parameter| parameter.inner(parameter.start)).collect();
-        let range = self.index(|t| matches!(t, Target::Key(key) if RANGE_KEYS.contains(&&**key)));
-        let mut short = match range.first() {
-            Some(&j) => self.holding(j, own[j])?,
+        let range = self.free_range();
+        let mut short = match range {
+            Some(j) => self.holding(j, own[j])?,
             None => self.clone(),
         };
         short.preset.material.adhesion = Adhesion::ShortRange;
         let found = start(&short, true, robust, &ProgressPart::new(progress, [0.0, 0.5]))?.best;
-        let Some(&j) = range.first() else { return Some(vec![own, found]) };
+        let Some(j) = range else { return Some(vec![own, found]) };
         let preset = short.preset_at(&found, Segment::Retraction)?;
         let (gamma, e) = (preset.material.work_of_adhesion, preset.material.effective_modulus);
         // λ_M is σ₀ times this.

@@ -167,5 +167,5 @@ fn a_retraction_that_begins_with_a_pinned_edge_is_told_so() {
     let found = run(&preset(SPHERE, 1.5, 0.02, ""), &written_late(0), &[E, W]);
     assert_eq!(found.verdict, Verdict::DoesNotDescribe);
     assert_eq!(found.reasons[0].kind, "dead-band", "{:?}", found.reasons);
-    assert!(found.reasons[0].sentence.contains("rests at s = 1.600"), "{:?}", found.reasons[0]);
+    assert!(found.reasons[0].sentence.contains("rests at s = 1.6001"), "{:?}", found.reasons[0]);
 }

@@ -322,15 +322,21 @@ pub fn fit_together(
         }
         runs.push(CurveFits { fit, alone });
     }
+    let law = law(&runs);
+    let verdict = runs.iter().map(|run| run.fit.verdict).max().unwrap_or(Verdict::NotConverged);
+    let preset = runs.first().map(|run| run.fit.preset.clone()).ok_or((0, FitError::NoData))?;
+    Ok(Together { verdict, law, direction: known.direction, collapse, runs, preset })
+}
+
+/// The values of the law, each as in the first curve that has it.
+fn law(runs: &[CurveFits]) -> Vec<Fitted> {
     let mut law: Vec<Fitted> = Vec::new();
     for fitted in runs.iter().flat_map(|run| run.fit.parameters.iter()) {
         if is_of_law(&fitted.key) && law.iter().all(|known| known.key != fitted.key) {
             law.push(fitted.clone());
         }
     }
-    let verdict = runs.iter().map(|run| run.fit.verdict).max().unwrap_or(Verdict::NotConverged);
-    let preset = runs.first().map(|run| run.fit.preset.clone()).ok_or((0, FitError::NoData))?;
-    Ok(Together { verdict, law, direction: known.direction, collapse, runs, preset })
+    law
 }
 
 /// Whether a curve can be fitted with those before it: their numbers are in the same units, and none of them has the same points.

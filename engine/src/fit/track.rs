@@ -10,7 +10,7 @@ use crate::disc::{Basis, ExactBasis, Local, Place, Solution, Table};
 use crate::gap::Gap;
 use crate::measured::Abscissa;
 use crate::preset::Preset;
-use crate::problem::{Adhesion, Cohesion, Control, Printer, Reduced, StatedCohesion};
+use crate::problem::{Adhesion, Cohesion, Control, Groups, Printer, Reduced, StatedCohesion};
 use crate::progress::{Unwatched, until};
 use crate::quasistatic::path::{PathError, Zones};
 use crate::quasistatic::places::places;
@@ -33,6 +33,13 @@ const QUESTIONS: usize = 40_000;
 /// Beyond this `λ_M` the zone is so thin that the pull-off force is that without a zone to 0.0007 of it, and no fit
 /// goes there.
 pub(super) const LARGEST_MAUGIS: f64 = 15.0;
+/// Beyond this one a fit counts as having run to its end.
+pub(super) const END_MAUGIS: f64 = 0.8 * LARGEST_MAUGIS;
+
+/// Maugis' `λ_M` of a preset.
+pub(super) fn maugis(preset: &Preset) -> Option<f64> {
+    Groups::of(&preset.problem(), None, preset.cohesion()).maugis
+}
 
 /// What arcs run along.
 #[derive(Debug, Clone)]

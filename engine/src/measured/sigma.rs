@@ -90,13 +90,13 @@ impl Neighbours {
     }
 }
 
-/// The mean square of normal differences, without those that lie far beyond their median, or beyond a few steps of a converter,
-/// whose median may be 0; `None` of none.
+/// The mean square of normal differences, without those far beyond their median, or beyond a few steps of a converter, where the
+/// median may be 0; `None` of none.
 fn mean_square(differences: &[f64], step: f64) -> Option<f64> {
     /// Standard deviations, beyond which one normal value in two thousand lies.
     const FAR: f64 = 3.5;
     let bound = FAR * (median(differences.iter().map(|x| x.abs()).collect())? / 0.6745).max(step);
-    let kept: Vec<f64> = differences.iter().copied().filter(|x| bound == 0.0 || x.abs() <= bound).collect();
+    let kept: Vec<f64> = differences.iter().copied().filter(|x| x.abs() <= bound).collect();
     Some(kept.iter().map(|x| x * x).sum::<f64>() / kept.len() as f64)
 }
 
@@ -153,4 +153,30 @@ pub(super) fn noise(
         (noise.sigma[axis], noise.from[axis]) = given[axis].map_or(found, |given| (given, Origin::Given));
     }
     noise
+}
+
+#[cfg(test)]
+mod tests {
+    use super::mean_square;
+    use crate::gap::shapes::split_mix::SplitMix64;
+
+    #[test]
+    fn what_lies_far_from_the_median_is_left_out() {
+        let mut random = SplitMix64::new(3);
+        // The sum of twelve even numbers is nearly normal, with a variance of 1.
+        let mut normal = || (0..12).map(|_| random.unit()).sum::<f64>() - 6.0;
+        let mut differences: Vec<f64> = (0..4000).map(|_| normal()).collect();
+        let clean = mean_square(&differences, 0.0).unwrap();
+        assert!((clean - 1.0).abs() < 0.08, "{clean}");
+        for outlier in differences.iter_mut().step_by(30) {
+            *outlier = 20.0;
+        }
+        let found = mean_square(&differences, 0.0).unwrap();
+        assert!((found / clean - 1.0).abs() < 0.05, "{found} {clean}");
+        // Rows at even steps with one gap among them have no noise.
+        assert_eq!(mean_square(&[0.0, 0.0, 5.0, 0.0, 0.0], 0.0), Some(0.0));
+        // Of a converter most differences are 0, and the others a step.
+        assert_eq!(mean_square(&[0.0, 0.5, 0.0, 0.5, 0.0, 0.0, 0.0, 7.0, 0.0], 0.5), Some(0.0625));
+        assert_eq!(mean_square(&[], 0.0), None);
+    }
 }

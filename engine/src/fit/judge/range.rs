@@ -5,15 +5,14 @@ use super::super::options::letter;
 use super::super::path::Foot;
 use super::super::problem::{FitProblem, FreeParameter, Target};
 use super::super::scatter::Scatter;
-use super::super::settled::AT_END;
 use super::super::solve::{SolvedFit, solve};
 use super::super::start::start;
-use super::super::track::LARGEST_MAUGIS;
+use super::super::track::{END_MAUGIS, maugis};
 use super::super::verdict::Reason;
 use crate::measured::Segment;
 use crate::preset::edge;
 use crate::preset::schema::RANGE_KEYS;
-use crate::problem::{Adhesion, Groups};
+use crate::problem::Adhesion;
 use crate::progress::Progress;
 use crate::units::Quantity;
 use crate::units::number::{said, short, with_unit};
@@ -64,12 +63,12 @@ pub(in super::super) fn unseen(
     if let Some(why) = runs_off(problem, u) {
         return Some(why);
     }
-    let j = problem.parameters.iter().position(|parameter| RANGE_KEYS.contains(&&*parameter.key()))?;
+    let j = problem.free_range()?;
     let error = what.errors.as_ref()?[j];
     let preset = problem.preset_at(u, Segment::Retraction)?;
-    let maugis = Groups::of(&preset.problem(), None, preset.cohesion()).maugis;
+    let maugis = maugis(&preset);
     let at = maugis.map_or_else(String::new, |maugis| format!(" at lambda_M = {}", short(maugis, 2)));
-    let is_known = error <= MOST && maugis.is_none_or(|maugis| maugis < AT_END * LARGEST_MAUGIS);
+    let is_known = error <= MOST && maugis.is_none_or(|maugis| maugis < END_MAUGIS);
     let why = if is_known {
         let mut sharp = problem.holding(j, u[j])?;
         sharp.preset.material.adhesion = Adhesion::ShortRange;
@@ -106,7 +105,7 @@ pub(in super::super) fn unseen(
 /// The range of the adhesion that the beginning of an approach shows, where that is free: what the curve does not show, its
 /// beginning may. `None` where it shows none.
 pub(in super::super) fn of_first_pull(problem: &FitProblem, solved: &SolvedFit) -> Option<String> {
-    let key = problem.parameters.iter().map(FreeParameter::key).find(|key| RANGE_KEYS.contains(&&**key))?;
+    let key = problem.parameters[problem.free_range()?].key();
     let u = &solved.minimum.parameters;
     let preset = problem.preset_at(u, Segment::Retraction)?;
     let range = problem.pulls_from(u, solved.scale)?;

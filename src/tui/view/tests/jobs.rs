@@ -128,7 +128,7 @@ fn questions_of_a_longer_way_have_their_answers() {
         // The contact at the worst state.
         ("Lgi", &["contact, s/λ", "A -1.480 Pc", "/Pc -1.480"]),
         // What was done between the second and the third jump.
-        ("nxnx>>nxgd", &["jumps 3", "A 0.0027", "limit", " P/Pc "]),
+        ("nxnx>>nxgd", &["jumps 3", "A 0.0027", "limit", "crest lost"]),
     ] {
         let mut screen = Screen::new("wavy-sphere");
         screen.text(300, 70);
