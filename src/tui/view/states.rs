@@ -24,8 +24,11 @@ pub fn draw(frame: &mut Frame<'_>, area: Rect, app: &App, selected: bool) {
     let (model, theme) = (&app.model, app.theme);
     let path = model.history.path();
     let jumps = path.iter().filter(|(_, node)| matches!(node.kind, NodeKind::Jump(_))).count();
-    let said = if selected { "; Enter goes there" } else { "" };
-    let title = format!("walk: {}, jumps {jumps}{said}", counted(path.len(), "state"));
+    let mut title = format!("walk: {}, jumps {jumps}", counted(path.len(), "state"));
+    let said = "; Enter goes there";
+    if selected && title.len() + said.len() + 2 <= usize::from(area.width) {
+        title.push_str(said);
+    }
     let block = panel(theme, &title, selected);
     let inner = block.inner(area);
     frame.render_widget(block, area);
@@ -40,13 +43,16 @@ pub fn draw(frame: &mut Frame<'_>, area: Rect, app: &App, selected: bool) {
     let first = first(path.len(), chosen, rows);
     let critical = divisor(&path);
     let largest = largest(&path);
-    let head = format!(" {}", laid(&head(model, critical), room));
+    let left_out = left_out(room);
+    let head = format!(" {}", laid(&head(model, critical), left_out));
+    // What was lost is cut where there is no room for it, which shows that there is something.
+    let left_out = &left_out[..left_out.len().min(2)];
     let mut lines = vec![Line::styled(theme.whole_words(&theme.text(&head), room), theme.dim())];
     lines.extend(path.iter().enumerate().skip(first).take(rows).map(|(i, (_, node))| {
         let before = i.checked_sub(1).and_then(|before| path.get(before)).map(|(_, node)| *node);
         let here = if i + 1 == path.len() { " @" } else { "" };
         let mark = if i == chosen && selected { '>' } else { ' ' };
-        let text = format!("{mark}{}{here}", laid(&row(node, before, critical, largest), room));
+        let text = format!("{mark}{}{here}", laid(&row(node, before, critical, largest), left_out));
         let style = if i == chosen && selected { theme.selection() } else { Style::new() };
         Line::styled(theme.whole_words(&theme.text(&text), room), style)
     }));
@@ -74,14 +80,18 @@ type WalkCells = [String; 7];
 /// Their widths, the last one the least that it needs.
 const WIDTHS: [usize; 7] = [5, 9, 10, 8, 10, 5, 9];
 
-/// A line of as many columns as there is room for: the crest is left out first, then s.
-fn laid(cells: &WalkCells, room: usize) -> String {
-    const FIRST_LEFT_OUT: [usize; 2] = [5, 4];
+/// The columns for which there is no room: the crest is left out first, then s, then what was lost.
+fn left_out(room: usize) -> &'static [usize] {
+    const FIRST: [usize; 3] = [5, 4, 6];
     let width = |without: &[usize]| -> usize {
         (0..WIDTHS.len()).filter(|at| !without.contains(at)).map(|at| WIDTHS[at] + 1).sum()
     };
-    let count = (0..FIRST_LEFT_OUT.len()).find(|count| width(&FIRST_LEFT_OUT[..*count]) <= room);
-    let left_out = &FIRST_LEFT_OUT[..count.unwrap_or(FIRST_LEFT_OUT.len())];
+    let count = (0..FIRST.len()).find(|count| width(&FIRST[..*count]) <= room);
+    &FIRST[..count.unwrap_or(FIRST.len())]
+}
+
+/// A line of these cells without those `left_out`.
+fn laid(cells: &WalkCells, left_out: &[usize]) -> String {
     let cell = |at: usize| match at {
         1 => format!("{:<1$}", cells[at], WIDTHS[at]),
         6 => cells[at].clone(),
