@@ -6,7 +6,7 @@
 
 use super::effect::Effect;
 use super::model::{Level, Model};
-use super::results::{AnyResult, Found, Task};
+use super::results::{Answer, AnyResult, Found, Task};
 use pulloff_engine::progress::Progress;
 use std::fmt;
 use std::sync::Arc;
@@ -134,7 +134,9 @@ pub(super) fn asked<R: Background>(model: &Model) -> Option<&R::Key> {
 pub(super) fn ask<R: Background>(model: &mut Model, key: R::Key) -> Effect {
     let id = model.number();
     let (name, patience, is_for_scripts) = (R::NAME, R::PATIENCE, R::is_for_scripts(&key));
-    model.results.slot_mut::<R>().asked = Some((id, Arc::new(key.clone())));
+    let slot = model.results.slot_mut::<R>();
+    slot.asked = Some((id, Arc::new(key.clone())));
+    slot.percent = 0;
     let share = |found: R| -> AnyResult { Arc::new(found) };
     let work = move |progress: &(dyn Progress + Sync), told: &mut dyn FnMut(AnyResult)| {
         R::compute(&key, progress, &mut |part| told(share(part))).map(share)
@@ -164,13 +166,21 @@ fn keep<R: Background>(model: &mut Model, found: Found) -> Vec<Effect> {
     let newest = slot.asked.as_ref().map(|(id, _)| *id);
     let is_old = slot.found.as_ref().is_some_and(|(id, _)| found.id < *id);
     let is_wanted = newest.is_some_and(|id| found.id == id || found.id < id && !R::ONLY_NEWEST);
-    let Ok(what) = Arc::clone(&found.what).downcast::<R>() else { return Vec::new() };
     if is_old || !is_wanted {
         return Vec::new();
     }
-    slot.found = Some((found.id, found.what));
-    if found.is_whole {
+    let (what, is_whole) = match found.what {
+        Answer::Percent(percent) => {
+            slot.percent = percent;
+            return Vec::new();
+        }
+        Answer::Part(what) => (what, false),
+        Answer::Whole(what) => (what, true),
+    };
+    let Ok(result) = Arc::clone(&what).downcast::<R>() else { return Vec::new() };
+    slot.found = Some((found.id, what));
+    if is_whole {
         slot.over = slot.over.max(found.id);
     }
-    R::came(model, what)
+    R::came(model, result)
 }

@@ -3,7 +3,7 @@
 use super::admissibility::AdmissibilityData;
 use super::background::ResultKind;
 use super::effect::Effect;
-use super::fit::FitProgress;
+use super::fit::FitOutcome;
 use super::fitting::Distances;
 use super::loops::LoopData;
 use super::maps::MapData;
@@ -17,7 +17,7 @@ use super::studies::StudyData;
 
 /// The kinds, in the order in which they are reported.
 pub static KINDS: [ResultKind; 11] = [
-    ResultKind::of::<FitProgress>(),
+    ResultKind::of::<FitOutcome>(),
     ResultKind::of::<PinCurve>(),
     ResultKind::of::<StudyData>(),
     ResultKind::of::<AdmissibilityData>(),

@@ -2,7 +2,8 @@
 //!
 //! The inline driver is for tests and scripts: each effect is done before the next command, so nothing depends on
 //! timing. The threaded driver is for the screen: the newest curve and the newest result of each kind win, walks are
-//! done in order and stream their states, files have a lane of their own, and none of them waits for another.
+//! done in order and stream their states, files have a lane of their own, and none of them waits for another. The
+//! thread of a result lives only while it is computed: a sleeping one would keep the memory that it once took.
 
 use super::backgrounds::KINDS;
 use super::curve::{CurveData, ProblemCurve};
@@ -96,8 +97,10 @@ const PATIENCE: Duration = Duration::from_millis(50);
 /// The states of a run are sent in batches, one per frame.
 const CHUNK: Duration = Duration::from_millis(30);
 
+/// Receives the replies of all threads.
+type Replies = Arc<dyn Fn(Reply) + Send + Sync>;
+
 /// Runs effects on their own threads; all replies go to one function.
-#[derive(Debug)]
 pub struct Workers {
     curve: Arc<RequestSlot<Box<Wish>>>,
     /// A lane for each kind of result, in the order of the list.
@@ -106,14 +109,39 @@ pub struct Workers {
     files: Sender<Box<Job>>,
     walking: Arc<Watch>,
     given_up: Arc<AtomicU64>,
+    reply: Replies,
 }
 
 /// The lane of a kind of result.
-#[derive(Debug)]
+#[derive(Debug, Default)]
 struct ResultLane {
-    slot: RequestSlot<Task>,
+    /// The newest task that waits.
+    next: Mutex<Option<Task>>,
+    /// Whether a thread takes what waits. It changes only while `next` is locked.
+    is_served: AtomicBool,
     /// Results up to this number must stop.
     stopped: AtomicU64,
+}
+
+impl ResultLane {
+    fn lock(&self) -> MutexGuard<'_, Option<Task>> {
+        self.next.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    /// Replaces the task that waits; whether a thread is needed for it.
+    fn put(&self, task: Task) -> bool {
+        let mut next = self.lock();
+        *next = Some(task);
+        !self.is_served.swap(true, Ordering::AcqRel)
+    }
+
+    /// The task that waits. Where there is none, the lane is served no longer.
+    fn take(&self) -> Option<Task> {
+        let mut next = self.lock();
+        let task = next.take();
+        self.is_served.store(task.is_some(), Ordering::Release);
+        task
+    }
 }
 
 /// Holds only the newest request.
@@ -155,34 +183,44 @@ impl<T> RequestSlot<T> {
 }
 
 impl Workers {
-    /// Starts the threads; they end with the process.
+    /// Starts the threads that always wait for something; they end with the process.
     pub fn start(
         store: Store,
-        reply: impl Fn(Reply) + Send + Clone + 'static,
+        reply: impl Fn(Reply) + Send + Sync + 'static,
     ) -> Result<Self, std::io::Error> {
+        let reply: Replies = Arc::new(reply);
         let (curve, given_up) = (Arc::new(RequestSlot::empty()), Arc::new(AtomicU64::new(0)));
         let walking = Arc::new(Watch::default());
         let (walks, requests) = channel();
         let (files, jobs) = channel();
-        let (slot, give_up, send) = (Arc::clone(&curve), Arc::clone(&given_up), reply.clone());
-        thread::Builder::new().name("curve".to_owned()).spawn(move || curves(&slot, &give_up, &send))?;
-        let mut lanes = Vec::new();
-        for kind in &KINDS {
-            let lane = Arc::new(ResultLane { slot: RequestSlot::empty(), stopped: AtomicU64::new(0) });
-            lanes.push(Arc::clone(&lane));
-            let send = reply.clone();
-            thread::Builder::new().name(kind.name.to_owned()).spawn(move || results(&lane, &send))?;
-        }
-        let (watch, send) = (Arc::clone(&walking), reply.clone());
-        thread::Builder::new().name("walk".to_owned()).spawn(move || walk_lane(&requests, &watch, &send))?;
-        thread::Builder::new().name("files".to_owned()).spawn(move || file_lane(&store, &jobs, &reply))?;
-        Ok(Self { curve, lanes, walks, files, walking, given_up })
+        let (slot, give_up, send) = (Arc::clone(&curve), Arc::clone(&given_up), Arc::clone(&reply));
+        thread::Builder::new().name("curve".to_owned()).spawn(move || curves(&slot, &give_up, &*send))?;
+        let lanes = KINDS.iter().map(|_| Arc::default()).collect();
+        let (watch, send) = (Arc::clone(&walking), Arc::clone(&reply));
+        thread::Builder::new().name("walk".to_owned()).spawn(move || walk_lane(&requests, &watch, &*send))?;
+        let send = Arc::clone(&reply);
+        thread::Builder::new().name("files".to_owned()).spawn(move || file_lane(&store, &jobs, &*send))?;
+        Ok(Self { curve, lanes, walks, files, walking, given_up, reply })
     }
 
     /// The lane of a kind.
-    fn lane(&self, name: &str) -> Option<&ResultLane> {
+    fn lane(&self, name: &str) -> Option<&Arc<ResultLane>> {
         let at = KINDS.iter().position(|kind| kind.name == name)?;
-        self.lanes.get(at).map(|lane| &**lane)
+        self.lanes.get(at)
+    }
+
+    /// Hands a task to its lane, and starts a thread for it if none is at work there.
+    fn compute(&self, task: Task) {
+        let Some(lane) = self.lane(task.name) else { return };
+        let name = task.name.to_owned();
+        if lane.put(task) {
+            let (own, send) = (Arc::clone(lane), Arc::clone(&self.reply));
+            let thread = thread::Builder::new().name(name).spawn(move || results(&own, &*send));
+            // Where the system has no thread to give, the task waits for the next request.
+            if thread.is_err() {
+                lane.is_served.store(false, Ordering::Release);
+            }
+        }
     }
 
     /// Hands every effect to its lane, in order.
@@ -198,11 +236,7 @@ impl Workers {
         match effect {
             Effect::Curve(wish) => self.curve.put(wish),
             Effect::StopCurve(id) => drop(self.given_up.fetch_max(id, Ordering::AcqRel)),
-            Effect::Compute(task) => {
-                if let Some(lane) = self.lane(task.name) {
-                    lane.slot.put(task);
-                }
-            }
+            Effect::Compute(task) => self.compute(task),
             Effect::Stop { name, id } => {
                 if let Some(lane) = self.lane(name) {
                     lane.stopped.fetch_max(id, Ordering::AcqRel);
@@ -248,16 +282,15 @@ fn curves(slot: &RequestSlot<Box<Wish>>, given_up: &AtomicU64, reply: &dyn Fn(Re
     }
 }
 
-/// Computes results of one kind, each until a newer one waits or it is stopped.
-fn results(lane: &ResultLane, reply: &dyn Fn(Reply)) {
-    loop {
-        let task = lane.slot.take();
+/// Computes results of one kind, each until a newer one waits or it is stopped, as long as any wait.
+fn results(lane: &ResultLane, reply: &(dyn Fn(Reply) + Send + Sync)) {
+    while let Some(task) = lane.take() {
         let begun = Instant::now();
         // Once set, it stays set.
         let outdated = AtomicBool::new(false);
         let stop = || {
             let is_early = task.patience.is_zero() || begun.elapsed() <= task.patience;
-            let now = lane.slot.is_waiting() && is_early;
+            let now = lane.lock().is_some() && is_early;
             outdated.fetch_or(now, Ordering::AcqRel) || now || lane.stopped.load(Ordering::Acquire) >= task.id
         };
         task.run(&stop, &mut |found| reply(Reply::Found(found)));

@@ -11,10 +11,9 @@ use pulloff_engine::fit::least_squares::Ending;
 use pulloff_engine::fit::{Fit, FitError, Options, Verdict, fit_own};
 use pulloff_engine::measured::Abscissa;
 use pulloff_engine::preset::{Preset, Value, data};
-use pulloff_engine::progress::{Progress, Stopped};
+use pulloff_engine::progress::Stopped;
 use pulloff_engine::report::number::short;
 use pulloff_engine::text::{counted, greek};
-use std::cell::{Cell, RefCell};
 use std::sync::Arc;
 
 /// Marks the selected key as free to be fitted, or unmarks it.
@@ -43,38 +42,11 @@ pub(super) fn not_fitted(preset: &Preset, name: &str) -> Option<String> {
     }
 }
 
-/// How far a fit has come, or its outcome.
+/// The outcome of a fit, or why there is none.
 #[derive(Debug, Clone)]
-pub enum FitProgress {
-    /// Progress in per cent.
-    Percent(u8),
-    Done(Result<Arc<Fit>, WordedFault>),
-}
+pub struct FitOutcome(Result<Arc<Fit>, WordedFault>);
 
-/// Reports the progress of a fit.
-struct Told<'a> {
-    percent: Cell<u8>,
-    progress: &'a dyn Progress,
-    tell: RefCell<&'a mut dyn FnMut(FitProgress)>,
-}
-
-impl Progress for Told<'_> {
-    fn report(&self, share: f64) {
-        // From 0 to 100; a report every five per cent is enough for someone waiting.
-        #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss)]
-        let percent = (share.clamp(0.0, 1.0) * 100.0) as u8;
-        if percent >= self.percent.get() + 5 {
-            self.percent.set(percent);
-            (self.tell.borrow_mut())(FitProgress::Percent(percent));
-        }
-    }
-
-    fn stop(&self) -> bool {
-        self.progress.stop()
-    }
-}
-
-impl Background for FitProgress {
+impl Background for FitOutcome {
     type Key = Preset;
     const NAME: &'static str = "fit";
     const CHANGES_VALUES: bool = true;
@@ -88,25 +60,23 @@ impl Background for FitProgress {
         asked == wanted
     }
 
-    fn compute(preset: &Preset, progress: Watcher<'_>, told: Tell<'_, Self>) -> Option<Self> {
+    fn compute(preset: &Preset, progress: Watcher<'_>, _: Tell<'_, Self>) -> Option<Self> {
         let free = preset.data.free().map(str::to_owned).collect();
         let options = Options { free, ..Options::default() };
-        let watch = Told { percent: Cell::new(0), progress, tell: RefCell::new(told) };
-        let found = fit_own(preset, &options, &watch).map(Arc::new).map_err(|error| {
+        let found = fit_own(preset, &options, progress).map(Arc::new).map_err(|error| {
             let can_be_mended = !matches!(error, FitError::NoStart | FitError::Stopped(Stopped));
             let units = if matches!(error, FitError::NoStart) { preset.note_of_units() } else { None };
             let units = units.map_or_else(String::new, |units| format!("; {units}"));
             WordedFault { text: format!("not fitted: {error}{units}"), can_be_mended }
         });
-        Some(Self::Done(found))
+        Some(Self(found))
     }
 
     fn came(model: &mut Model, found: Arc<Self>) -> Vec<Effect> {
-        let Self::Done(result) = &*found else { return Vec::new() };
         if asked::<Self>(model) != Some(&model.preset) {
             return model.refuse("the values changed while the fit ran: its result is discarded");
         }
-        match result {
+        match &found.0 {
             Ok(found) => taken(model, found),
             Err(reason) => {
                 model.tell(Level::of(reason), reason.text.clone());
@@ -116,15 +86,14 @@ impl Background for FitProgress {
     }
 
     fn says(model: &Model) -> Option<String> {
-        model.results.under_way::<Self>()?;
-        let percent = if let Some(Self::Percent(percent)) = model.results.so_far() { *percent } else { 0 };
+        let percent = model.results.percent::<Self>()?;
         Some(format!("fitting, {percent} %; {}: best so far", Id::Cancel.named()))
     }
 }
 
 /// Requests a fit of the present values; a fit under way ends with the best result so far.
 pub(super) fn fit(model: &mut Model) -> Vec<Effect> {
-    if let Some(stops) = stop::<FitProgress>(model) {
+    if let Some(stops) = stop::<FitOutcome>(model) {
         return vec![stops];
     }
     if model.preset.data.source.is_some() && model.preset.data.free().next().is_none() {
@@ -132,7 +101,7 @@ pub(super) fn fit(model: &mut Model) -> Vec<Effect> {
         return model.refuse(text);
     }
     let preset = model.preset.clone();
-    vec![ask::<FitProgress>(model, preset)]
+    vec![ask::<FitOutcome>(model, preset)]
 }
 
 /// Adopts what a fit found.

@@ -3,6 +3,7 @@
 //! Turning one of its numbers moves the preset on the map and requests nothing.
 
 use super::background::{Background, Tell, Want, Watcher};
+use super::command::Id;
 use super::map_axes::MapAxes;
 use super::model::Model;
 use super::view::View;
@@ -49,6 +50,15 @@ impl Background for MapData {
 
     fn compute((preset, axes): &MapKey, progress: Watcher<'_>, _: Tell<'_, Self>) -> Option<Self> {
         Self::of(preset, axes, progress)
+    }
+
+    fn says(model: &Model) -> Option<String> {
+        let percent = model.results.percent::<Self>()?;
+        Some(format!("computing the map, {percent} %; {} cancels", Id::Cancel.named()))
+    }
+
+    fn given_up(model: &mut Model) -> Option<String> {
+        Self::says(model).map(|_| format!("the map is given up: {} takes other axes", Id::Edit.named()))
     }
 }
 

@@ -4,7 +4,8 @@ use pulloff_engine::progress::Progress;
 use std::any::{Any, TypeId};
 use std::collections::BTreeMap;
 use std::fmt;
-use std::sync::Arc;
+use std::sync::atomic::{AtomicU8, Ordering};
+use std::sync::{Arc, Mutex, PoisonError};
 use std::time::Duration;
 
 pub(super) type AnyResult = Arc<dyn Any + Send + Sync>;
@@ -14,6 +15,8 @@ pub(super) type AnyResult = Arc<dyn Any + Send + Sync>;
 pub(super) struct AnswerSlot {
     pub asked: Option<(u64, AnyResult)>,
     pub found: Option<(u64, AnyResult)>,
+    /// How much of the answer is done, in per cent.
+    pub percent: u8,
     /// The number of the last question that was answered completely, or given up.
     pub over: u64,
 }
@@ -53,6 +56,12 @@ impl Results {
         if self.under_way::<R>() == Some(*id) { found.downcast_ref() } else { None }
     }
 
+    /// How much of the computation under way is done, in per cent; `None` where none is under way.
+    pub fn percent<R: 'static>(&self) -> Option<u8> {
+        self.under_way::<R>()?;
+        Some(self.slot::<R>()?.percent)
+    }
+
     /// The key of the last request, if it is still wanted.
     pub fn asked<R: 'static, K: 'static>(&self) -> Option<&K> {
         self.slot::<R>()?.asked.as_ref()?.1.downcast_ref()
@@ -86,21 +95,63 @@ impl fmt::Debug for Task {
     }
 }
 
-/// An answer, or the part of it that is done.
+/// An answer, or how far it has come.
 #[derive(Debug, Clone)]
 pub struct Found {
     pub name: &'static str,
     pub id: u64,
-    pub(super) is_whole: bool,
-    pub(super) what: AnyResult,
+    pub(super) what: Answer,
+}
+
+#[derive(Debug, Clone)]
+pub(super) enum Answer {
+    Whole(AnyResult),
+    /// What is done so far.
+    Part(AnyResult),
+    Percent(u8),
+}
+
+/// Receives answers.
+pub(super) type Reply<'a> = &'a mut (dyn FnMut(Found) + Send);
+
+/// Watches a task, and passes on how far it has come.
+struct TaskProgress<'a> {
+    progress: &'a (dyn Progress + Sync),
+    reply: Mutex<Reply<'a>>,
+    task: &'a Task,
+    percent: AtomicU8,
+}
+
+impl TaskProgress<'_> {
+    fn tell(&self, what: Answer) {
+        let mut reply = self.reply.lock().unwrap_or_else(PoisonError::into_inner);
+        reply(Found { name: self.task.name, id: self.task.id, what });
+    }
+}
+
+impl Progress for TaskProgress<'_> {
+    /// Every five per cent is enough for someone waiting.
+    fn report(&self, share: f64) {
+        // From 0 to 100.
+        #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss)]
+        let percent = (share.clamp(0.0, 1.0) * 100.0) as u8;
+        if percent >= self.percent.load(Ordering::Acquire) + 5 {
+            self.percent.store(percent, Ordering::Release);
+            self.tell(Answer::Percent(percent));
+        }
+    }
+
+    fn stop(&self) -> bool {
+        self.progress.stop()
+    }
 }
 
 impl Task {
     /// Does the work, and hands over its results.
-    pub fn run(&self, progress: &(dyn Progress + Sync), reply: &mut dyn FnMut(Found)) {
-        let found = |what, is_whole| Found { name: self.name, id: self.id, is_whole, what };
-        if let Some(what) = (self.work)(progress, &mut |part| reply(found(part, false))) {
-            reply(found(what, true));
+    pub fn run(&self, progress: &(dyn Progress + Sync), reply: Reply<'_>) {
+        let told = TaskProgress { progress, reply: Mutex::new(reply), task: self, percent: AtomicU8::new(0) };
+        if let Some(what) = (self.work)(&told, &mut |part| told.tell(Answer::Part(part))) {
+            told.tell(Answer::Whole(what));
         }
     }
 }

@@ -286,7 +286,7 @@ pub(super) fn one_sided(list: &[MeasuredBranch], notes: &mut Vec<String>) {
     let without: Vec<&str> =
         list.iter().filter(|branch| branch.free.is_empty()).map(|branch| branch.segment.name()).collect();
     if let (Some(name), true) = (without.first(), without.len() < list.len()) {
-        notes.push(format!("the {name} has no rows apart: it ends in contact"));
+        notes.push(format!("no rows of the {name} look apart: all are taken to be in contact, unless --free-part says otherwise"));
     }
 }
 

@@ -3,7 +3,7 @@
 use super::curve::give_up;
 use crate::explorer::backgrounds::give_up_first;
 use crate::explorer::effect::Effect;
-use crate::explorer::fit::{FitProgress, fit};
+use crate::explorer::fit::{FitOutcome, fit};
 use crate::explorer::model::{Level, Model};
 use crate::explorer::requests::stop;
 use crate::explorer::script::key_called;
@@ -26,7 +26,7 @@ pub(in crate::explorer) fn cancel(model: &mut Model) -> Vec<Effect> {
         stop(model)
     } else if model.is_computing() {
         give_up(model)
-    } else if model.results.under_way::<FitProgress>().is_some() {
+    } else if model.results.under_way::<FitOutcome>().is_some() {
         fit(model)
     } else if model.cross.take().is_some() {
         Vec::new()

@@ -11,6 +11,7 @@ use crate::explorer::requests::{change, file, read, stop};
 use crate::explorer::script::key_called;
 use pulloff_engine::gap::shapes::ProfileRows;
 use pulloff_engine::gap::{Gap, Shape};
+use pulloff_engine::preset::edge;
 use pulloff_engine::preset::family::is_parameter;
 use pulloff_engine::preset::invalid::Invalid;
 use pulloff_engine::preset::schema::{Kind, NONE, RADIUS_OVER_CURVATURE, START_KEYS};
@@ -86,10 +87,16 @@ fn tell_bare(model: &mut Model, key: &str, text: &str, changed: &Preset) {
 
 /// Says that a value has no effect yet.
 fn tell_idle(model: &mut Model, key: &str, changed: &Preset) {
-    let is_given = changed.get(key).is_some();
-    if matches!(key, "path.rate" | "path.steps") && is_given && changed.edge.exponent.is_none() {
-        model.tell(Level::Info, format!("{key} has no effect until edge.exponent gives the edge a speed"));
+    let edge = &changed.edge;
+    if !edge::KEYS.contains(&key) || changed.get(key).is_none() {
+        return;
     }
+    let missing = match edge.exponent {
+        None => "edge.exponent gives the edge a speed",
+        Some(_) if edge.rate.is_none() && edge.steps.is_empty() => "path.rate or path.steps is set",
+        Some(_) => return,
+    };
+    model.tell(Level::Info, format!("{key} has no effect until {missing}"));
 }
 
 /// Says that the values are the same already.

@@ -6,7 +6,7 @@ use crate::explorer::script::offers::{DEVICES, Typing};
 use crate::explorer::script::parse;
 use crate::explorer::table::{CommandRow, row_of};
 use crate::explorer::{Command, Effect, Id, ScreenPanel, nudge, reach};
-use crate::tui::overlay::{Choice, Choose, Dialog, Item};
+use crate::tui::overlay::{Choice, Choose, Dialog, Item, Prompt};
 use crossterm::event::{KeyCode, KeyEvent, KeyModifiers};
 use pulloff_engine::preset::schema::Kind;
 use pulloff_engine::preset::{Row, Value};
@@ -61,6 +61,14 @@ impl App {
                 }
             }
             KeyCode::Char(c) if is_text => {
+                // `stiffness=` goes on in the prompt of the line that begins so.
+                if let (Some((_, item)), '=') = (choose.current(), c)
+                    && let Choice::Prompt(prompt) = &item.action
+                {
+                    let word = item.text.split_whitespace().next().unwrap_or_default();
+                    let input = format!("{word}=").into();
+                    return self.lay(Dialog::Prompt(Prompt { input, fresh: false, ..(**prompt).clone() }));
+                }
                 if choose.filter.chars().count() < FILTER {
                     choose.filter.push(c);
                     choose.selected = 0;

@@ -141,6 +141,9 @@ fn choices_are_lists() {
     assert_eq!(screen.app.model.preset.path.control, Control::Stiffness(0.3));
     screen.keys("\rkk\r");
     assert_eq!(screen.app.model.preset.path.control, Control::Displacement);
+    // Or both in one line, as on the command line.
+    screen.keys("cstiff=0.4\r");
+    assert_eq!(screen.app.model.preset.path.control, Control::Stiffness(0.4));
 }
 
 #[test]

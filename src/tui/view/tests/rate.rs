@@ -119,7 +119,16 @@ fn without_a_rate_nothing_is_pulled() {
         }
         assert!(crate::explorer::reach::why_not(&screen.app.model, View::ForceTime).is_some(), "{keys}");
     }
-    screen.keys(":view force-time\r");
+    screen.keys(":set reference_speed=2\r");
+    let drawn = screen.text(100, 30);
+    assert!(
+        drawn.contains("edge.reference_speed has no effect until path.rate or path.steps is set"),
+        "{drawn}"
+    );
+    screen.keys(":set exponent=none\r:set reference_speed=3\r");
+    let drawn = screen.text(100, 30);
+    assert!(drawn.contains("edge.reference_speed has no effect until edge.exponent gives"), "{drawn}");
+    screen.keys("uu:view force-time\r");
     let drawn = screen.text(160, 45);
     assert!(drawn.contains("no rate is given: set path.rate or path.steps"), "{drawn}");
 }
