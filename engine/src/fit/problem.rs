@@ -249,15 +249,18 @@ impl FitProblem {
         instrument
     }
 
+    /// How far the points reach in one of their numbers.
+    pub(super) fn extent(&self, of: fn(&MeasuredPoint) -> f64) -> f64 {
+        let values = self.data.iter().map(|datum| of(&datum.point));
+        let [lo, hi] = values.fold([f64::INFINITY, f64::NEG_INFINITY], |[lo, hi], x| [lo.min(x), hi.max(x)]);
+        (hi - lo).max(0.0)
+    }
+
     /// The noise of the points as a share of their ranges.
     fn noise(&self) -> f64 {
-        let share = |sigma: f64, of: fn(&MeasuredPoint) -> f64| {
-            let values = self.data.iter().map(|datum| of(&datum.point));
-            let [lo, hi] =
-                values.fold([f64::INFINITY, f64::NEG_INFINITY], |[lo, hi], x| [lo.min(x), hi.max(x)]);
-            if hi > lo { sigma / (hi - lo) } else { 0.0 }
-        };
-        share(self.sigma[0], |point| point.x).min(share(self.sigma[1], |point| point.force))
+        let share = |sigma: f64, extent: f64| if extent > 0.0 { sigma / extent } else { 0.0 };
+        let extents: [f64; 2] = [self.extent(|point| point.x), self.extent(|point| point.force)];
+        share(self.sigma[0], extents[0]).min(share(self.sigma[1], extents[1]))
     }
 
     /// The contact radius that the way up reaches at x, less the instrument's offset, at `u`; `None` where the approach

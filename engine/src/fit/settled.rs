@@ -17,7 +17,8 @@ use crate::units::{Quantity, number::said};
 pub(super) const ROUNDS: usize = 200;
 
 /// The last fit, from `u`. Where `least` is given, σ of P is that of neighbours, but not below the second number; so is
-/// σ of x, not below the first, where that is finite.
+/// σ of x, not below the first, where that is finite, nor above a tenth of the range of x: to a larger one all curves would
+/// be the same.
 pub(super) fn last(
     problem: &mut FitProblem,
     u: &[f64],
@@ -29,12 +30,13 @@ pub(super) fn last(
     const TIMES: usize = 2;
     let mut solved = solve(problem, u, robust, ROUNDS, progress).ok_or(FitError::NoStart)?;
     let Some([least_x, least_force]) = least else { return Ok(solved) };
+    let most_x = 0.1 * problem.extent(|point| point.x);
     for _ in 0..TIMES {
         let off = if least_x.is_finite() { problem.off(&solved) } else { None };
         let of_force = || problem.scatter(&solved).contact.map(|scale| [1.0, scale]);
         let Some([x, force]) = off.or_else(of_force) else { break };
         if off.is_some() {
-            problem.sigma[0] = (problem.sigma[0] * x).max(least_x);
+            problem.sigma[0] = (problem.sigma[0] * x).min(most_x).max(least_x);
         }
         problem.sigma[1] = (problem.sigma[1] * force).max(least_force);
         let u = &solved.minimum.parameters;

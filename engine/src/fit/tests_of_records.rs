@@ -221,3 +221,58 @@ fn of_several_ends_the_nearest_to_all_rows_counts() {
     assert!(is_at_truth(&from(&beside, std::slice::from_ref(&truth))));
     assert!(is_at_truth(&from(&truth, &[])));
 }
+
+/// P over s of an edge that moves as √t with this law of G over γ, by its speed over the slowest; rows in the order of time.
+fn moving_edge(seed: u64, times: bool, law: &dyn Fn(f64) -> f64) -> Points {
+    let mut normal = Normal::new(seed);
+    let mut points = Points { segments: None, ..no_points(Abscissa::Radius) };
+    let mut clock = Vec::new();
+    for i in 1..=120 {
+        let t = f64::from(i) / 120.0;
+        let s = 0.8 * t.sqrt();
+        let adhesion = 0.02 * law(1.0 / t.sqrt());
+        points.x.push(s + 3e-4 * normal.next());
+        points.force.push(sphere(1.0, adhesion, 1.0)(s).1 + 3e-4 * normal.next());
+        clock.push(t);
+    }
+    points.time = times.then_some(clock);
+    points
+}
+
+#[test]
+fn an_approach_over_the_radius_shows_that_its_edge_is_fast() {
+    let kinds = |points: &Points| -> Vec<&str> {
+        found(points, &[E, W], "").reasons.iter().map(|reason| reason.kind).collect()
+    };
+    for seed in 0..6 {
+        // A closing edge gains less the faster it is; without times, an opening one may be listed from its end.
+        let closing = |v: f64| 1.0 / (1.0 + 0.4 * v.sqrt());
+        let opening = |v: f64| 1.0 + 0.4 * v.sqrt();
+        assert!(kinds(&moving_edge(seed, true, &closing)).contains(&"rate"), "{seed}");
+        assert!(kinds(&moving_edge(seed, false, &opening)).contains(&"rate"), "{seed}");
+        // An edge at rest is nothing else; at most the points do not tell it from a fast one.
+        let at_rest = found(&moving_edge(seed, true, &|_| 1.0), &[E, W], "");
+        assert!(at_rest.reasons.iter().all(|reason| reason.kind == "speed"), "{seed}: {:?}", at_rest.reasons);
+        let is_told = if at_rest.reasons.is_empty() { Verdict::Describes } else { Verdict::NotDetermined };
+        assert_eq!(at_rest.verdict, is_told);
+    }
+}
+
+#[test]
+fn a_small_disc_may_pull_more_as_it_grows() {
+    // All radii are near that of the pull-off under a dead load, and P falls over most of them.
+    let state = sphere(1.0, 0.02, 1.0);
+    let largest = (9.0 * std::f64::consts::PI * 0.02 / 8.0_f64).cbrt();
+    for seed in 0..6 {
+        let mut normal = Normal::new(seed);
+        let mut points = Points { segments: None, ..no_points(Abscissa::Radius) };
+        for i in 0..60 {
+            let s = largest * (1.0 - 0.014 * f64::from(i));
+            points.x.push(s + 2e-4 * normal.next());
+            points.force.push(state(s).1 + 2e-4 * normal.next());
+        }
+        let fit = found(&points, &[E, W], "");
+        assert_eq!(fit.turned, [false; 2], "{seed}");
+        assert!(off(&fit, &[1.0, 0.02]).iter().all(|z| z.abs() < 4.0), "{seed}: {:?}", fit.parameters);
+    }
+}

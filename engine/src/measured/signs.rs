@@ -121,7 +121,9 @@ impl UnsignedPoints<'_> {
             turn(points, [false, true]);
             notes.push(if rises == Some(false) { FALLS } else { PULLED }.to_owned());
         }
-        let is_doubtful = pulls.is_some_and(|pulls| rises.is_some_and(|rises| rises != pulls));
+        // A disc of which the force over the radius is measured may pull more as it grows: near the pull-off, and on waves.
+        let may_fall = self.abscissa == Abscissa::Radius && rises == Some(false);
+        let is_doubtful = may_fall || pulls.is_some_and(|pulls| rises.is_some_and(|rises| rises != pulls));
         Orientation { turned: [x, turned], or: is_doubtful.then_some([x, !turned]), unless_apart: None }
     }
 }

@@ -22,48 +22,75 @@ impl Clock {
         match self {
             Self::Times => "",
             Self::Rows => ", if the rows are evenly spaced in time",
-            Self::Approach => ", if the bodies are pulled apart at a constant rate",
+            Self::Approach => ", if the bodies move at a constant rate",
         }
     }
 }
 
 /// What is known of the edge at the points of a problem.
 pub(super) struct EdgeMotion {
-    /// −ds/dt, by the number of the point; none except for retractions in contact.
+    /// |ds/dt|, by the number of the point; none except for the branches in contact that are looked at.
     pub(super) speeds: Vec<Option<Speed>>,
-    /// The number of the row in its retraction, divided by the number of rows there.
+    /// The number of the row in its branch, divided by the number of rows there.
     pub(super) order: Vec<f64>,
+    /// Whether the edge opens, which costs more at a speed, or closes, which gains less.
+    pub(super) segment: Segment,
     /// The clock that the speeds are taken by.
     pub(super) clock: Clock,
+    /// Whether its branches are read from their ends.
+    pub(super) is_backward: bool,
 }
 
 impl EdgeMotion {
-    /// The edges in the retractions of `problem`, at the values `u`, by each clock available: the column of times or,
-    /// without one, all the others. Empty where radii are not measured.
+    /// The edges in the retractions of `problem`, or in its approaches where it has no others, at the values `u`, by each clock
+    /// available: the column of times or, without one, all the others. Empty where radii are not measured.
     pub(super) fn all(problem: &FitProblem, u: &[f64]) -> Vec<Self> {
         if problem.abscissa != Abscissa::Radius && !problem.space {
             return Vec::new();
         }
-        let mut rows = retractions(problem).into_iter().flatten();
-        if rows.all(|i| problem.data[i].point.time.is_finite()) {
-            return vec![Self::of(problem, Clock::Times, &|i| problem.data[i].point.time)];
+        let (own, branches) = moving(problem);
+        if branches.iter().flatten().all(|i| problem.data[*i].point.time.is_finite()) {
+            return vec![Self::of(problem, own, Clock::Times, &|i| problem.data[i].point.time)];
         }
-        let by_rows = Self::of(problem, Clock::Rows, &|i| problem.data[i].point.at as f64);
-        let by_approach = approach(problem, u)
-            .map(|approach| Self::of(problem, Clock::Approach, &|i| -approach(i).unwrap_or(f64::NAN)));
-        [Some(by_rows), by_approach].into_iter().flatten().collect()
+        // Rows without times may be listed by their radius: those of an approach may be a retraction, from its end.
+        let segments: &[Segment] =
+            if own == Segment::Retraction { &[own] } else { &[own, Segment::Retraction] };
+        let way = approach(problem, u);
+        let of = |segment: &Segment| {
+            let (segment, back) = (*segment, if *segment == own { 1.0 } else { -1.0 });
+            let by_rows =
+                Self::of(problem, segment, Clock::Rows, &|i| back * problem.data[i].point.at as f64);
+            let by_way = way.as_ref().map(|way| {
+                Self::of(problem, segment, Clock::Approach, &|i| -sense(segment) * way(i).unwrap_or(f64::NAN))
+            });
+            [Some(by_rows), by_way].into_iter().flatten()
+        };
+        segments.iter().flat_map(of).collect()
     }
 
-    fn of(problem: &FitProblem, clock: Clock, time: &dyn Fn(usize) -> f64) -> Self {
+    /// The edge by a clock, its branches read as `segment`: from their ends if they are others.
+    fn of(problem: &FitProblem, segment: Segment, clock: Clock, time: &dyn Fn(usize) -> f64) -> Self {
         let count = problem.data.len();
-        let mut edge = Self { speeds: vec![None; count], order: vec![0.0; count], clock };
-        for rows in retractions(problem) {
+        let (own, mut branches) = moving(problem);
+        if segment != own {
+            for rows in &mut branches {
+                rows.reverse();
+            }
+        }
+        let mut edge = Self {
+            speeds: vec![None; count],
+            order: vec![0.0; count],
+            segment,
+            clock,
+            is_backward: segment != own,
+        };
+        for rows in branches {
             let share = 1.0 / rows.len() as f64;
             let (times, radii): (Vec<f64>, Vec<f64>) =
                 rows.iter().map(|i| (time(*i), problem.radius(*i))).unzip();
             let found = speeds(&times, &radii, noise(&times, &radii));
             for (number, (i, speed)) in rows.iter().zip(found).enumerate() {
-                edge.speeds[*i] = speed.map(|speed| Speed { value: -speed.value, ..speed });
+                edge.speeds[*i] = speed.map(|speed| Speed { value: -sense(segment) * speed.value, ..speed });
                 edge.order[*i] = number as f64 * share;
             }
         }
@@ -79,30 +106,58 @@ impl EdgeMotion {
     pub(super) fn speed(&self, i: usize) -> Option<f64> {
         self.speeds[i].map(|speed| hypot(speed.value.max(0.0), speed.error))
     }
+
+    /// 1 where the edge opens, −1 where it closes.
+    pub(super) fn sense(&self) -> f64 {
+        sense(self.segment)
+    }
+
+    /// What the work of adhesion does as the edge moves faster.
+    pub(super) fn verb(&self) -> &'static str {
+        if self.segment == Segment::Retraction { "grows" } else { "falls" }
+    }
+
+    /// The edge, in words.
+    pub(super) fn noun(&self) -> &'static str {
+        if self.segment == Segment::Retraction { "edge" } else { "closing edge" }
+    }
 }
 
-/// The rows of each retraction in contact, in the order of measurement.
-pub(super) fn retractions(problem: &FitProblem) -> Vec<Vec<usize>> {
-    let of_branch = |branch: usize| {
-        let is_wanted = |i: &usize| {
-            let datum = &problem.data[*i];
-            datum.branch == branch && !datum.free && datum.segment == Segment::Retraction
+fn sense(segment: Segment) -> f64 {
+    if segment == Segment::Retraction { 1.0 } else { -1.0 }
+}
+
+/// The rows of each retraction in contact, in the order of measurement. Where there are none, those of each approach.
+pub(super) fn moving(problem: &FitProblem) -> (Segment, Vec<Vec<usize>>) {
+    let of = |segment: Segment| -> Vec<Vec<usize>> {
+        let of_branch = |branch: usize| {
+            let is_wanted = |i: &usize| {
+                let datum = &problem.data[*i];
+                datum.branch == branch && !datum.free && datum.segment == segment
+            };
+            let mut rows: Vec<usize> = (0..problem.data.len()).filter(is_wanted).collect();
+            rows.sort_by_key(|i| problem.data[*i].point.at);
+            rows
         };
-        let mut rows: Vec<usize> = (0..problem.data.len()).filter(is_wanted).collect();
-        rows.sort_by_key(|i| problem.data[*i].point.at);
-        rows
+        (0..problem.branches()).map(of_branch).filter(|rows| !rows.is_empty()).collect()
     };
-    (0..problem.branches()).map(of_branch).filter(|rows| !rows.is_empty()).collect()
+    let retractions = of(Segment::Retraction);
+    if retractions.is_empty() {
+        (Segment::Approach, of(Segment::Approach))
+    } else {
+        (Segment::Retraction, retractions)
+    }
 }
 
 /// δ of a row from its force and radius: at a held contact radius δ follows P as under a punch, with the stiffness
 /// 2E*s.
 fn approach<'a>(problem: &'a FitProblem, u: &[f64]) -> Option<impl Fn(usize) -> Option<f64> + 'a> {
     let paths = problem.paths(u)?;
-    let modulus = problem.preset_at(u, Segment::Retraction)?.material.effective_modulus;
+    let segment = moving(problem).0;
+    let modulus = problem.preset_at(u, segment)?.material.effective_modulus;
     let baseline = problem.instrument_at(u).baseline;
     Some(move |i: usize| {
-        let (path, s) = (paths.of(Segment::Retraction), problem.radius(i));
+        let (path, s) = (paths.of(segment), problem.radius(i));
         let more = problem.data[i].point.force - baseline - path.at(s)?.0[1];
         Some(path.approach(s)? + more / (2.0 * modulus * s))
     })

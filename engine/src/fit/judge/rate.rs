@@ -3,6 +3,7 @@
 //!
 //! ```text
 //! G = γ (v/v_max)ⁿ          v = −ds/dt of a retraction
+//! G = γ (v_max/v)ⁿ          v = ds/dt of an approach, which is looked at where there is no retraction
 //! ```
 //!
 //! An edge at rest has a work of adhesion too: below a share of the largest speed, or within the error of a speed, all
@@ -20,14 +21,14 @@ use super::super::solve::SolvedFit;
 use super::super::track::Mover;
 use super::super::verdict::Reason;
 use super::Evidence;
-use super::edge::{EdgeMotion, retractions};
+use super::edge::{EdgeMotion, moving};
 use super::scores::{MOST_OF_NEIGHBOURS, score};
-use super::untold::untold;
+use super::untold::{UNTOLD, untold};
 use crate::elementary::{ln, pow};
 use crate::units::number::short;
 
 /// The kinds of the reasons that are found here.
-pub(super) const KINDS: [&str; 2] = ["rate", "speed"];
+pub(super) const KINDS: [&str; 2] = ["rate", UNTOLD];
 /// The share of right fits that the test flags.
 const FALSE_ALARM: f64 = 5e-3;
 /// Points lean to a work of adhesion that grows if they do so by this many standard errors, by any clock or by the
@@ -36,7 +37,7 @@ const LEANING: f64 = 1.4;
 /// Speeds below this share of the largest count as this share.
 const SLOWEST: f64 = 1.0 / 400.0;
 
-/// What speaks for a work of adhesion that grows, or against telling it from one that does not.
+/// What speaks for a work of adhesion that grows, or of a closing edge falls, or against telling it from one that does not.
 pub(super) fn of_rate(evidence: Evidence) -> Option<Reason> {
     let Evidence { problem, solved, .. } = evidence;
     let edges = EdgeMotion::all(problem, &solved.minimum.parameters);
@@ -45,7 +46,9 @@ pub(super) fn of_rate(evidence: Evidence) -> Option<Reason> {
     // The speed by each clock and, where none is a column of times, the number of the row.
     let tests = if edges.iter().any(EdgeMotion::is_timed) { 1.0 } else { 1.0 + edges.len() as f64 };
     let found = tested.iter().find_map(|(edge, tested)| grows(evidence, edge, (*tested, tests)));
-    // What a fit takes up of a law by one clock is left in the law by another, or by the number of the row.
+    // What a fit takes up of a law by one clock is left in the law by another, or by the number of the row. That rows are
+    // listed from their end is told only where it is found: as a doubt it would hang over every approach.
+    let tested: Vec<_> = tested.into_iter().filter(|(edge, _)| !edge.is_backward).collect();
     let all = tested.iter().flat_map(|(edge, [[_, by_speed], [_, by_row]])| {
         [*by_speed, if edge.is_timed() { f64::NEG_INFINITY } else { *by_row }]
     });
@@ -64,7 +67,7 @@ pub(super) fn of_rate(evidence: Evidence) -> Option<Reason> {
 /// at rest.
 pub(super) fn of_untimed(evidence: Evidence) -> Option<String> {
     let edges = EdgeMotion::all(evidence.problem, &evidence.solved.minimum.parameters);
-    let mut untimed = edges.iter().filter(|edge| !edge.is_timed());
+    let mut untimed = edges.iter().filter(|edge| !edge.is_timed() && !edge.is_backward);
     let reason = untimed.find_map(|edge| untold(evidence, edge, 0.0))?;
     Some(format!("there is no column of times: {}", reason.sentence))
 }
@@ -73,7 +76,7 @@ pub(super) fn of_untimed(evidence: Evidence) -> Option<String> {
 fn tested(evidence: Evidence, edge: &EdgeMotion) -> Option<[[f64; 2]; 2]> {
     let Evidence { problem, solved, scatter, inner } = evidence;
     let mut alone = vec![false; problem.per_point() * problem.data.len()];
-    for rows in retractions(problem) {
+    for rows in moving(problem).1 {
         off_alone(problem, solved, MOST_OF_NEIGHBOURS * scatter.contact?, &rows, &mut alone);
     }
     let most = (0..problem.data.len()).filter_map(|i| edge.speed(i)).fold(0.0, f64::max);
@@ -87,8 +90,9 @@ fn tested(evidence: Evidence, edge: &EdgeMotion) -> Option<[[f64; 2]; 2]> {
         // A law that the values take up completely says nothing.
         Some(score(evidence, &z, Some(&alone)).unwrap_or([0.0; 2]))
     };
-    let by_speed = of(&|i| edge.speed(i).map_or(0.0, |speed| ln((speed / most).max(SLOWEST))))?;
-    Some([by_speed, of(&|i| edge.order[i].sqrt())?])
+    let by_speed =
+        of(&|i| edge.speed(i).map_or(0.0, |speed| edge.sense() * ln((speed / most).max(SLOWEST))))?;
+    Some([by_speed, of(&|i| edge.sense() * edge.order[i].sqrt())?])
 }
 
 /// A work of adhesion that grows with the speed of the edge or, where no column has the times, with the number of the
@@ -104,21 +108,27 @@ fn grows(
         let [least, most] = (0..problem.data.len())
             .filter_map(|i| edge.speed(i))
             .fold([f64::INFINITY, 0.0], |[lo, hi], speed| [lo.min(speed), hi.max(speed)]);
+        let times = pow((least / most).max(SLOWEST), -edge.sense() * n.min(1.0));
         let sentence = format!(
-            "a work of adhesion that grows with the speed of the edge describes the points better{}: that of \
-             the fastest rows is about {} times that of the slowest ({} standard errors). No quasi-static \
-             curve has such an edge",
+            "a work of adhesion that {} with the speed of the {} describes the points better{}: that of the fastest \
+             rows is about {} times that of the slowest ({} standard errors). No quasi-static curve has such an edge",
+            edge.verb(),
+            edge.noun(),
             edge.clock.condition(),
-            short(pow((least / most).max(SLOWEST), -n.min(1.0)), 2),
+            // Near 1 it is the part beyond 1 that counts.
+            if (times - 1.0).abs() < 0.1 { format!("{times:.3}") } else { short(times, 2) },
             short(t, 2)
         );
         return Some(Reason::new("rate", n, sentence));
     }
+    let verb = edge.verb();
     let [n, t] = Some(by_row).filter(|of| !edge.is_timed() && is_found(*of))?;
     let sentence = format!(
-        "a work of adhesion that grows along the retraction describes the points better ({} standard \
-         errors), and so does one that grows with the speed of the edge: a column of times would decide",
-        short(t, 2)
+        "a work of adhesion that {verb} along the {} describes the points better ({} standard \
+         errors), and so does one that {verb} with the speed of the {}: a column of times would decide",
+        edge.segment.name(),
+        short(t, 2),
+        edge.noun(),
     );
     Some(Reason::new("rate", n, sentence))
 }

@@ -2,6 +2,7 @@
 //!
 //! ```text
 //! G = γ (1 + √(v/v₀))         v₀ = 3 times the median speed of the rows:     G is 1.6 γ there
+//! G = γ/(1 + √(v/v₀))         of a closing edge
 //! ```
 //!
 //! after A. N. Gent and J. Schultz, J. Adhesion 3, 281 (1972), with their exponent near ½. A modulus takes up much of
@@ -23,7 +24,7 @@ use super::super::track::Mover;
 use super::super::verdict::Reason;
 use super::Evidence;
 use super::edge::EdgeMotion;
-use crate::elementary::{exp_m1, hypot};
+use crate::elementary::{exp_m1, hypot, pow};
 use crate::measured::branches::median;
 use crate::measured::{Abscissa, Segment};
 use crate::problem::Control;
@@ -33,6 +34,8 @@ use nalgebra::DVector;
 use std::collections::BTreeMap;
 use std::f64::consts::TAU;
 
+/// The kind of the reason found here.
+pub(in crate::fit) const UNTOLD: &str = "speed";
 /// v₀ over the median speed.
 const REFERENCE: f64 = 3.0;
 /// A law that is off by no more than this many standard errors is as good; the limit is larger by the standard errors
@@ -76,14 +79,16 @@ pub(super) fn untold(evidence: Evidence, edge: &EdgeMotion, lean: f64) -> Option
         })
         .collect();
     let sentence = format!(
-        "the points do not show whether the work of adhesion grows with the speed of the edge{}: one that is \
+        "the points do not show whether the work of adhesion {} with the speed of the {}{}: one that is \
          {} times its value at rest at the median speed fits as well, with {}. Slower edges, or a wider \
          range of speeds, would decide",
+        edge.verb(),
+        edge.noun(),
         edge.clock.condition(),
-        short(1.0 + REFERENCE.recip().sqrt(), 2),
+        short(pow(1.0 + REFERENCE.recip().sqrt(), edge.sense()), 2),
         told.join(", ")
     );
-    Some(Reason::new("speed", worse, sentence))
+    Some(Reason::new(UNTOLD, worse, sentence))
 }
 
 /// A work of adhesion that grows: √(G/γ) − 1 at each row, by its place, and how much the residuals of the row count.
@@ -104,7 +109,10 @@ impl AdhesionGrowth {
             let off = (hypot(known.error, OF_BEND * known.bend) / speed).min(NOTHING);
             let of_energy = 0.5 * x / (1.0 + x) * off;
             let count = |k: usize| 1.0 / (1.0 + (slopes[per * i + k] * of_energy / s).powi(2));
-            rows.insert(datum.point.at, ((1.0 + x).sqrt() - 1.0, (0..per).map(count).collect()));
+            rows.insert(
+                datum.point.at,
+                (pow(1.0 + x, 0.5 * edge.sense()) - 1.0, (0..per).map(count).collect()),
+            );
         }
         Self(rows)
     }
