@@ -40,7 +40,7 @@ pub struct SpeedsArguments {
 pub fn run(arguments: &SpeedsArguments) -> Result<ExitCode, Failure> {
     let console = arguments.messages.open();
     let format = arguments.format.of(arguments.destination.path(), Format::Table)?;
-    let (preset, files) = apart(&arguments.paths);
+    let (preset, files) = apart(&arguments.paths)?;
     let file = match &files[..] {
         [] => None,
         [file] => Some(file),

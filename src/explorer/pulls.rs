@@ -106,10 +106,10 @@ impl PullData {
         let seen =
             (!of_force && (1..=jumps).contains(&peaks)).then(|| format!("; {peaks}/{jumps} jumps seen"));
         Some(format!(
-            "Largest pull {peak} {rate}{}{}; edge to {}",
+            "Largest pull {peak} {rate}{}{}{}",
             smooth.unwrap_or_default(),
             seen.unwrap_or_default(),
-            over(run.top_edge_speed)
+            run.top_edge_speed.map_or_else(String::new, |speed| format!("; edge to {}", over(speed)))
         ))
     }
 }

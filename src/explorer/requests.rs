@@ -4,7 +4,8 @@ use super::effect::{Effect, Wish};
 use super::job::Job;
 use super::model::{Awaits, Level, Model, Walking};
 use super::node::NodeKind;
-use pulloff_engine::preset::{Key, Preset, Value};
+use super::pins::labelled;
+use pulloff_engine::preset::{Key, Preset, Value, edge};
 use pulloff_engine::problem::Control;
 use std::path::PathBuf;
 use std::sync::Arc;
@@ -67,6 +68,13 @@ pub(super) fn change(model: &mut Model, preset: Preset) -> Vec<Effect> {
     }
     let upto = model.parameter + 1;
     let listed: Vec<_> = model.knobs().into_iter().take(upto).map(|(row, _)| row.key.clone()).collect();
+    let rate = model.preset.row(edge::RATE).zip(model.preset.get(edge::RATE));
+    let rate =
+        rate.filter(|_| model.preset.path.control != preset.path.control && preset.edge.rate.is_none());
+    if let Some((row, value)) = rate {
+        let rate = labelled(&row, &value, &model.preset.units);
+        model.tell(Level::Info, format!("{rate} is dropped: it is no rate under the new control"));
+    }
     model.preset = preset;
     if same_problem {
         return Vec::new();

@@ -6,6 +6,7 @@ use super::measured::DRAWN;
 use super::parts::{Figure, Line, Mark, Role, Sign};
 use super::subject::Subject;
 use crate::explorer::speeds::untimed;
+use pulloff_engine::measured::Segment;
 use pulloff_engine::preset::Preset;
 use pulloff_engine::rate::law::Motion;
 use pulloff_engine::report::pull::law;
@@ -44,7 +45,7 @@ pub fn figure(subject: &Subject<'_>) -> Figure {
     let rows: Vec<&SpeedRow> = report.rows.iter().filter(known).collect();
     figure.marks.extend(rows.iter().step_by(rows.len().div_ceil(DRAWN).max(1)).filter_map(|row| {
         let speed = row.speed?;
-        let sign = Sign::Measured { loading: speed < 0.0, apart: false };
+        let sign = Sign::Measured { loading: row.segment == Segment::Approach.name(), apart: false };
         Some(Mark { sign, at: at(speed.abs(), row.energy_release_rate) })
     }));
     // The approach first, because each is drawn as one.

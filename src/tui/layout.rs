@@ -109,6 +109,11 @@ pub fn is_alone(area: Rect, is_whole: bool) -> bool {
     is_whole || arrangement(area).is_some_and(|found| found.shape == PaneLayout::Alone)
 }
 
+/// Whether nothing can be drawn on this screen, if anything was drawn yet.
+pub fn is_too_small(area: Rect) -> bool {
+    area != Rect::ZERO && arrangement(area).is_none()
+}
+
 /// The width inside the column on a screen of this size that has one.
 pub fn column_width(area: Rect) -> u16 {
     COLUMN + area.width.saturating_sub(120) / PER_COLUMN

@@ -172,7 +172,8 @@ fn twice_both_speeds_is_half_the_time() {
     assert_eq!(slow.peak.force.to_bits(), fast.peak.force.to_bits());
     assert_eq!(slow.dissipated, fast.dissipated);
     assert_eq!(slow.moments.len(), fast.moments.len());
-    assert_eq!((slow.peak.time, 2.0 * slow.top_edge_speed), (2.0 * fast.peak.time, fast.top_edge_speed));
+    assert_eq!(slow.peak.time, 2.0 * fast.peak.time);
+    assert_eq!(slow.top_edge_speed.map(|speed| 2.0 * speed), fast.top_edge_speed);
     let [a, b] = [&slow, &fast].map(|run| run.last_contact.unwrap());
     assert_eq!((a.time, a.control), (2.0 * b.time, b.control));
 }

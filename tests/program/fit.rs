@@ -12,6 +12,16 @@ pub const LENS: &str = include_str!("../../presets/data/lens.csv");
 pub const FREE: [&str; 2] = ["--free", "E*,gamma,data.offset"];
 
 #[test]
+fn the_preset_may_stand_anywhere_among_the_files_and_there_is_one() {
+    let home = Home::new();
+    let ended = home.run(&[&["fit", "lens", "shipped:lens.csv"], &FREE[..]].concat());
+    assert!(ended.status == 0 && ended.out.contains("the model describes"), "{} {}", ended.out, ended.err);
+    let ended = home.run(&[&["fit", "lens", "shipped:lens.csv", "fig-9.toml"], &FREE[..]].concat());
+    let said = "lens and fig-9.toml are presets: files with points go with one";
+    assert!(ended.status == 2 && ended.err.contains(said), "{} {}", ended.status, ended.err);
+}
+
+#[test]
 fn the_truth_of_the_shipped_curve_is_found_and_written() {
     let home = Home::new();
     let ended = home.run(

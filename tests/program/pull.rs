@@ -47,6 +47,18 @@ fn the_document_has_what_its_contract_says() {
 }
 
 #[test]
+fn an_edge_that_closed_before_it_opens_is_not_called_pinned() {
+    let said = |steps: &str| {
+        let set = format!("path.steps={steps}");
+        let output = pulloff(&[&WAVY[..], &["--set", &set]].concat()).success();
+        String::from_utf8(output.get_output().stdout.clone()).unwrap()
+    };
+    assert!(said("apart at 0.1").contains("\npinned until  t "));
+    let closed = said("to 0.2 at 0.1; apart at 0.1");
+    assert!(closed.contains("\nopens from    t ") && !closed.contains("pinned"), "{closed}");
+}
+
+#[test]
 fn a_dead_load_falls_without_end_or_is_borne() {
     let force = ["--control", "force", "--rate", "1e-3"];
     let found = document(&[&WAVY[..], &force].concat());
@@ -58,6 +70,8 @@ fn a_dead_load_falls_without_end_or_is_borne() {
             ["fig-3-jkr", "--set", "basis.kind=exact", "--set", &set, "--set", "edge.reference_speed=1"];
         document(&[&sphere[..], &force].concat())["runs"][0].clone()
     };
+    // Its edge is fastest at the end, without bound, and a smooth sphere has no snap before.
+    assert_eq!(of("0.5")["top_edge_speed"], Value::Null);
     for run in ["0.05", "0.06", "0.5"].map(of) {
         let peak = &run["peak"];
         assert_eq!((&peak["contact_radius"], &peak["approach"]), (&Value::from(0.0), &Value::Null), "{run}");

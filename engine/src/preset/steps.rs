@@ -52,8 +52,9 @@ impl EdgeSpec {
             }
         }
         if self.rate.is_some() && !self.steps.trim().is_empty() {
-            let cause =
-                format!("{STEPS} says what a pull does instead: remove one of the two, as with {STEPS}=none");
+            let cause = format!(
+                "{STEPS} says what a pull does instead: remove one of the two, as with {RATE}=none or {STEPS}=none"
+            );
             faults.push(Invalid::Made { key: RATE.into(), cause });
         }
         if let Err(cause) = preset.steps() {

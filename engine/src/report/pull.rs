@@ -109,8 +109,9 @@ pub struct RunReport {
     pub last_contact: Option<LastContactReport>,
     /// What the edge dissipates in all; null where a dead load falls without end.
     pub dissipated: Option<f64>,
-    /// The largest speed of the edge before the last contact, in a snap or at the peak.
-    pub top_edge_speed: f64,
+    /// The largest speed of the edge before the last contact, in a snap or at the peak; null where a dead load has its peak at
+    /// the last contact and the edge no snap.
+    pub top_edge_speed: Option<f64>,
     /// What is missing between the work and elastic energy, adhesion and dissipation, relative to the work.
     pub balance: f64,
     /// Every moment that the integrator kept.
@@ -261,7 +262,7 @@ impl Factors {
                 control: moment.control * self.control,
             }),
             dissipated: pull.dissipated.map(|energy| energy * self.energy),
-            top_edge_speed: top_speed(pull, control) * self.speed,
+            top_edge_speed: top_speed(pull, control).map(|speed| speed * self.speed),
             balance: pull.balance,
             moments: pull.moments.iter().map(|moment| self.row(rate, moment)).collect(),
         }
@@ -269,10 +270,10 @@ impl Factors {
 }
 
 /// The largest speed of the edge in a snap or at the least force. Under a dead load that force lasts until the bodies
-/// are apart, where the speed has no bound.
-fn top_speed(pull: &Pull, control: Control) -> f64 {
-    let at_peak = if control == Control::Force { 0.0 } else { pull.peak.speed.abs() };
-    pull.snaps.iter().map(|snap| snap.top_speed).fold(at_peak, f64::max)
+/// are apart, where the speed has no bound: without a snap there is none.
+fn top_speed(pull: &Pull, control: Control) -> Option<f64> {
+    let at_peak = (control != Control::Force).then(|| pull.peak.speed.abs());
+    pull.snaps.iter().map(|snap| snap.top_speed).chain(at_peak).reduce(f64::max)
 }
 
 impl PullReport {
@@ -418,7 +419,12 @@ impl PullReport {
             line("rate", &shown(units, self.rate_quantity(), rate));
         }
         line("start", &at(&run.start));
-        line("pinned until", &run.pinned_until.as_ref().map_or("the end".to_owned(), &at));
+        // After a turn the edge may have closed before.
+        let opens = run.pinned_until.filter(|at| at.contact_radius > run.start.contact_radius);
+        line(
+            if opens.is_some() { "opens from" } else { "pinned until" },
+            &run.pinned_until.as_ref().map_or("the end".to_owned(), &at),
+        );
         for snap in &run.snaps {
             let value = format!(
                 "contact {} > {}  top speed {}  dissipated {}",
@@ -474,7 +480,7 @@ impl PullReport {
                 critical.map_or_else(dash, |critical| significant(run.peak.force / critical, 6)),
                 run.tension_peaks.len().to_string(),
                 run.snaps.len().to_string(),
-                number(Quantity::Speed, run.top_edge_speed),
+                run.top_edge_speed.map_or_else(dash, |speed| number(Quantity::Speed, speed)),
                 run.last_contact.map_or_else(dash, |last| number(Quantity::Time, last.time)),
                 run.dissipated.map_or_else(dash, |lost| number(Quantity::Energy, lost)),
                 format!("{:.0e}", run.balance),

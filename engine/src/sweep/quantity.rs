@@ -127,8 +127,8 @@ quantities! {
         Stage::Pull(|run| run.dissipated.map(Cell::Number));
     "tension_peaks" "" Count "force minima of that pull with a fall and a rise of more than 1 % of P_c":
         Stage::Pull(|run| Some(Cell::Count(run.tension_peaks.len())));
-    "top_edge_speed" "v" Speed "largest speed of the edge in the snaps of that pull":
-        Stage::Pull(|run| Some(Cell::Number(run.top_edge_speed)));
+    "top_edge_speed" "v" Speed "largest speed of the edge in the snaps of that pull, or at its largest force":
+        Stage::Pull(|run| run.top_edge_speed.map(Cell::Number));
     "limit_points" "" Count "limit points of the control on the curve": Stage::Limits;
     "start_contact_radius" "s" Length "contact radius at the start, the largest of the curve":
         Stage::Start(|start| Some(start.contact_radius()));

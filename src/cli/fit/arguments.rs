@@ -26,7 +26,7 @@ use std::path::{Path, PathBuf};
 /// The arguments of `pulloff fit`.
 #[derive(Debug, Args)]
 pub struct FitArguments {
-    /// Files with measured curves, followed by a preset's name or file (ending in .toml), the wavy sphere when left
+    /// Files with measured curves, and a preset's name or file (ending in .toml), the wavy sphere when left
     /// out; or only a preset that names its curve in data.file
     #[arg(required = true, value_name = "FILE... [PRESET]")]
     pub(super) paths: Vec<OsString>,
@@ -188,7 +188,7 @@ pub(super) fn refused(path: &Path, preset: &Preset, error: &FitError) -> Failure
 impl FitArguments {
     /// Reads the files, the preset and the options.
     pub(super) fn read(&self, console: &Console) -> Result<(Vec<PathBuf>, Loaded, Options), Failure> {
-        let (preset, mut files) = measured::apart(&self.paths);
+        let (preset, mut files) = measured::apart(&self.paths)?;
         let problem = problem::ProblemArguments { preset, changes: self.changes.clone() };
         let loaded = problem.load_for(!files.is_empty(), console)?;
         files = files::measured(files, console)?;

@@ -10,7 +10,7 @@ use crate::explorer::{Command, Effect, Home, Id, Reply, ScreenPanel, View, answe
 use crate::figure::Subject;
 use crate::store::{Listed, Listing, Source};
 use crate::tui::copy::drawn;
-use crate::tui::layout::is_alone;
+use crate::tui::layout::{is_alone, is_too_small};
 use crate::tui::overlay::{Choice, Confirm, Dialog, Help, Item, LONGEST_LINE, Prompt, Purpose};
 use crate::tui::view::help::ABOUT;
 use crate::tui::view::{cells, places, problem};
@@ -45,6 +45,10 @@ impl App {
             let mut effects = self.key(KeyCode::Esc.into());
             effects.extend(self.key(KeyEvent { modifiers: key.modifiers - KeyModifiers::ALT, ..key }));
             return effects;
+        }
+        // Where nothing can be drawn, nobody sees what a key does: it may only quit.
+        if is_too_small(self.screen) && self.keymap.command(key) != Some(Id::Quit) {
+            return Vec::new();
         }
         let mut effects = self.pause(key);
         effects.extend(match self.overlay.take() {

@@ -4,6 +4,7 @@ use super::Preset;
 use crate::gap::Shape;
 use crate::preset::build::build;
 use crate::preset::data;
+use crate::preset::edge;
 use crate::preset::family::{self, parameter_key};
 use crate::preset::groups;
 use crate::preset::invalid::Invalid;
@@ -20,6 +21,8 @@ use crate::problem::Control;
 use crate::text::quote;
 use crate::units::{Quantity, UnitSystem, parse_quantity};
 
+const CONTROL: &str = "path.control";
+
 impl Preset {
     /// Gives a key another value.
     ///
@@ -29,7 +32,7 @@ impl Preset {
     /// `gap.shape` drops the keys of the old shape, and keeps the old waves, or takes the proportions of the paper's Fig. 9. A
     /// `gap.formula` keeps the parameters it has in common with the old one; its others begin with the value of an old
     /// one with a similar name, or with 1. A `basis.kind` drops the keys of the old basis and takes the defaults of the
-    /// new one. A group (see [`groups`]) changes the values it follows from. The rows of a `gap.file` come from the
+    /// new one. In SI a control of another dimension drops the rate. A group (see [`groups`]) changes the values it follows from. The rows of a `gap.file` come from the
     /// preset's files, relative to the folder of the previous file.
     ///
     /// # Errors
@@ -91,6 +94,13 @@ impl Preset {
                 parameter(key).is_some_and(|other| other.fits(&row.key, &value.to_string()))
             });
         }
+        // A rate of a force is none of a length: in SI it would become another rate of the same number.
+        if row.whole() == CONTROL
+            && (value.to_string() == "force") != (self.path.control == Control::Force)
+            && self.units != UnitSystem::Reduced
+        {
+            values.remove(edge::RATE);
+        }
         match &*row.key {
             "gap.shape" => {
                 let radius = self.gap.length().unwrap_or_else(|| self.reduced().units.length);
@@ -122,7 +132,7 @@ impl Preset {
                         _ => false,
                     };
                 if states && !matches!(self.path.control, Control::Stiffness(_)) {
-                    values.remove("path.control");
+                    values.remove(CONTROL);
                 }
             }
             key => {

@@ -295,6 +295,31 @@ fn a_stiffness_makes_the_device_a_spring_and_goes_with_it() {
 }
 
 #[test]
+fn a_rate_of_a_length_is_none_of_a_force() {
+    let mut preset = crate::preset::read("lens", include_str!("../../../../presets/lens.toml")).unwrap();
+    let mut set = |assignments: &[(&str, &str)]| {
+        let all: Vec<_> =
+            assignments.iter().map(|(key, text)| ((*key).to_owned().into(), (*text).to_owned())).collect();
+        preset.assign_all(&all).unwrap();
+        preset.edge.rate
+    };
+    assert_eq!(set(&[("edge.exponent", "0.5"), ("edge.reference_speed", "1 um/s")]), None);
+    let of_a_length = Some(2e-6);
+    assert_eq!(set(&[("path.control", "displacement"), ("path.rate", "2 um/s")]), of_a_length);
+    assert_eq!(set(&[("path.control", "stiffness=5 N/m")]), of_a_length);
+    // Both together are read in either order.
+    assert_eq!(set(&[("path.control", "force")]), None);
+    assert_eq!(set(&[("path.rate", "3 uN/s")]), Some(3e-6));
+    assert_eq!(set(&[("path.control.stiffness", "5 N/m")]), None);
+    assert_eq!(set(&[("path.control", "force"), ("path.rate", "4 uN/s")]), Some(4e-6));
+    // In reduced units a number has no unit to lose.
+    let mut preset = wavy();
+    preset.assign("path.rate", "0.5").unwrap();
+    preset.assign("path.control", "force").unwrap();
+    assert_eq!(preset.edge.rate, Some(0.5));
+}
+
+#[test]
 fn a_shape_drops_and_brings_its_keys() {
     let mut preset = wavy();
     preset.set("gap.shape", "sphere".into()).unwrap();

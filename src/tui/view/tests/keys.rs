@@ -6,6 +6,7 @@ use crate::tui::config::read;
 use crate::tui::keymap::Keymap;
 use crossterm::event::KeyCode;
 use pulloff_engine::problem::Control;
+use ratatui::layout::Rect;
 
 fn bind(screen: &mut Screen, keys: &str) {
     screen.app.keymap = Keymap::of(&read("c", &format!("[keys]\n{keys}")).unwrap()).unwrap();
@@ -206,4 +207,28 @@ fn a_path_that_ends_early_says_so_and_why_is_read_whole() {
     assert!(short.contains("the path ends here") && !short.contains("torn inside"), "{short}");
     screen.keys("?\t");
     assert!(screen.text(80, 24).contains("contact is torn inside"), "{}", screen.text(80, 24));
+}
+
+#[test]
+fn keys_that_nobody_sees_do_nothing() {
+    let mut screen = Screen::new("wavy-sphere");
+    assert!(screen.text(30, 8).contains("pulloff needs 40x10"));
+    screen.app.screen = Rect::new(0, 0, 30, 8);
+    let states = screen.app.model.history.path().len();
+    screen.keys("nn:set gamma=0.1\r");
+    assert_eq!((screen.app.model.history.path().len(), screen.app.overlay.is_none()), (states, true));
+    screen.app.screen = Rect::new(0, 0, 80, 24);
+    screen.keys("n");
+    assert!(screen.app.model.history.path().len() > states);
+}
+
+#[test]
+fn a_rate_that_the_new_control_cannot_have_is_dropped_with_a_word() {
+    let mut screen = Screen::new("fig-9-si");
+    screen.keys(":set edge.exponent=0.5 reference_speed=1um/s path.rate=\"2 um/s\"\r");
+    assert_eq!(screen.app.model.preset.edge.rate, Some(2e-6), "{}", screen.text(100, 30));
+    screen.keys("cforce\r");
+    let text = screen.text(120, 40);
+    assert!(screen.app.model.preset.edge.rate.is_none(), "{text}");
+    assert!(text.contains("is dropped: it is no rate under the new control"), "{text}");
 }
