@@ -9,6 +9,7 @@ use pulloff_engine::preset::Preset;
 use pulloff_engine::preset::edge::RATE;
 use pulloff_engine::report::pull::{AskedPulls, COLUMNS, FAILURE_COLUMNS, MOMENT_COLUMNS};
 use pulloff_engine::report::{PullReport, columns, json, table};
+use pulloff_engine::sweep::axis::{AxisValues, SweepAxis};
 use pulloff_engine::text::quote;
 use pulloff_engine::units::range_ends;
 use std::process::ExitCode;
@@ -17,7 +18,7 @@ use std::process::ExitCode;
 const FORCE: &str = "path.start_force";
 
 /// The largest number of rates in one range.
-const RATES: usize = 10_000;
+const RATES: u64 = 10_000;
 
 /// The arguments of `pulloff pull`.
 #[derive(Debug, Args)]
@@ -93,16 +94,13 @@ fn rates(preset: &Preset, text: &str) -> Result<Vec<f64>, Failure> {
     let expected = "expected log:FROM..TO:COUNT, as in log:1e-6..1e2:100";
     let (ends, count) = range.rsplit_once(':').ok_or_else(|| wrong(text, expected))?;
     let (from, to) = range_ends(ends).ok_or_else(|| wrong(text, expected))?;
-    let count: usize = count.trim().parse().map_err(|_| wrong(text, expected))?;
+    let count: u64 = count.trim().parse().map_err(|_| wrong(text, expected))?;
     if !(2..=RATES).contains(&count) {
         return Err(wrong(text, &format!("the count must be a whole number from 2 to {RATES}")));
     }
     let (from, to) = (one(&from)?, one(to)?);
-    let factor = pulloff_engine::elementary::ln(to / from);
-    let share = |k: usize| k as f64 / (count - 1) as f64;
-    Ok((0..count)
-        .map(|k| if k + 1 == count { to } else { from * pulloff_engine::elementary::exp(factor * share(k)) })
-        .collect())
+    let axis = SweepAxis { key: RATE.to_owned(), points: AxisValues::Logarithmic { from, to, count } };
+    Ok((0..count).filter_map(|k| axis.value(k)?.as_number()).collect())
 }
 
 /// Parses a number as a value of `key`.

@@ -176,9 +176,10 @@ impl SweepAxis {
                 Some((*to).into())
             }
             AxisValues::Linear { from, to, count } => Some((from + (to - from) * share(*count)).into()),
-            // Computed in software, so that it is the same on every machine.
+            // Computed in software, so that it is the same on every machine; without the last digit, so that a decade is one.
             AxisValues::Logarithmic { from, to, count } => {
-                Some((from * pow(to / from, share(*count))).into())
+                let x = from * pow(to / from, share(*count));
+                Some(format!("{x:.14e}").parse().unwrap_or(x).into())
             }
             AxisValues::Whole { from, step, .. } => {
                 let steps = i64::try_from(index).ok()?;
