@@ -56,9 +56,11 @@ mod tests {
     use crate::explorer::driver::Inline;
     use crate::explorer::pins::Pins;
     use crate::explorer::results::Task;
-    use crate::explorer::{Command, Id, Reply, Workers, answer, open, update};
+    use crate::explorer::script::parse;
+    use crate::explorer::{Command, Id, Reply, View, Workers, answer, open, update};
     use crate::store::Store;
     use pulloff_engine::preset::Value;
+    use std::sync::atomic::{AtomicBool, Ordering};
     use std::sync::mpsc::channel;
     use std::time::Duration;
 
@@ -121,6 +123,35 @@ mod tests {
         let effects = update(&mut model, Id::Cancel.into());
         assert!(matches!(effects.as_slice(), [Effect::Stop { name: "pins", id }] if *id == first.id));
         assert!(under_way(&model).is_none() && model.pins.is_empty());
+    }
+
+    #[test]
+    fn a_map_says_how_far_it_is_and_stays_given_up_until_it_is_another() {
+        let (mut model, driver, effects) = session();
+        driver.settle(&mut model, effects);
+        let asked = |effects: Vec<Effect>| {
+            effects.into_iter().find_map(|effect| match effect {
+                Effect::Compute(task) if task.name == "map" => Some(task),
+                _ => None,
+            })
+        };
+        let task = asked(update(&mut model, Command::Show(View::Map))).unwrap();
+        assert!(says(&model, "computing the map, 0 %") && model.map().is_none());
+        let (is_heard, mut heard) = (AtomicBool::new(false), Vec::new());
+        task.run(&|| is_heard.load(Ordering::Acquire), &mut |found| {
+            is_heard.store(true, Ordering::Release);
+            heard.push(found);
+        });
+        for found in heard {
+            assert!(answer(&mut model, Reply::Found(found)).is_empty());
+        }
+        assert!(says(&model, "computing the map, ") && !says(&model, ", 0 %"));
+        let effects = update(&mut model, Id::Cancel.into());
+        assert!(matches!(effects.as_slice(), [Effect::Stop { name: "map", .. }]), "{effects:?}");
+        assert!(under_way(&model).is_none() && matches!(model.map(), Some(Err("it was given up"))));
+        assert!(asked(want_all(&mut model)).is_none());
+        let effects = update(&mut model, parse("map gamma=0.001..0.01").unwrap().unwrap());
+        assert!(asked(effects).is_some() && model.map().is_none());
     }
 
     #[test]

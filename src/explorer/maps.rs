@@ -62,6 +62,19 @@ impl Background for MapData {
     }
 }
 
+impl Model {
+    /// The last map, or why there is none; `None` before the first one is there.
+    pub fn map(&self) -> Option<Result<&MapReport, &str>> {
+        let results = &self.results;
+        let is_given_up =
+            || results.asked::<MapData, MapKey>().is_some() && results.percent::<MapData>().is_none();
+        results
+            .found::<MapData>()
+            .map(MapData::report)
+            .or_else(|| is_given_up().then_some(Err("it was given up")))
+    }
+}
+
 impl MapData {
     /// The map of a preset; `None` if `progress` asked to stop.
     pub fn of(preset: &Preset, axes: &MapAxes, progress: &dyn Progress) -> Option<Self> {

@@ -4,7 +4,6 @@ use super::measured::MeasuredMarks;
 use super::scale::Scale;
 use crate::explorer::branches::{WalkBranch, branches};
 use crate::explorer::fitting::Distances;
-use crate::explorer::maps::MapData;
 use crate::explorer::model::is_on_curve;
 use crate::explorer::pins::{Pin, name_among};
 use crate::explorer::profile::StateInside;
@@ -71,7 +70,7 @@ impl<'a> Subject<'a> {
             path: model.path(),
             cycle: model.cycle().and_then(|cycle| cycle.report()),
             pull: model.pull(),
-            map: model.results.found::<MapData>().map(MapData::report),
+            map: model.map(),
             event: model.log().entries.get(model.event).and_then(|entry| entry.number),
             measured: MeasuredMarks::of(&model.preset).and_then(Result::ok),
             distances: model.results.found::<Distances>().map(|distances| &distances.found),

@@ -296,7 +296,7 @@ fn a_stiffness_makes_the_device_a_spring_and_goes_with_it() {
 
 #[test]
 fn a_rate_of_a_length_is_none_of_a_force() {
-    let mut preset = crate::preset::read("lens", include_str!("../../../../presets/lens.toml")).unwrap();
+    let mut preset = crate::preset::read("si", include_str!("../../../../presets/fig-9-si.toml")).unwrap();
     let mut set = |assignments: &[(&str, &str)]| {
         let all: Vec<_> =
             assignments.iter().map(|(key, text)| ((*key).to_owned().into(), (*text).to_owned())).collect();
