@@ -114,21 +114,18 @@ pub(super) fn own(preset: &Preset) -> Option<PathBuf> {
 /// # Errors
 /// Two presets are named.
 pub(super) fn apart(paths: &[OsString]) -> Result<(Option<OsString>, Vec<PathBuf>), Failure> {
-    let (presets, mut files): (Vec<&OsString>, Vec<&OsString>) =
-        paths.iter().partition(|path| is_preset(path));
+    let (presets, files): (Vec<&OsString>, Vec<&OsString>) = paths.iter().partition(|path| is_preset(path));
     if let [one, other, ..] = presets[..] {
         let [one, other] = [one, other].map(|path| show_path(Path::new(path)));
         return Err(Failure::Usage(format!("{one} and {other} are presets: files with points go with one")));
     }
-    // Standard input is points, unless it stands where the preset usually does.
-    let preset = presets.first().copied().or_else(|| files.pop_if(|last| *last == stream::STANDARD));
-    Ok((preset.cloned(), files.into_iter().map(PathBuf::from).collect()))
+    Ok((presets.first().map(|preset| (*preset).clone()), files.into_iter().map(PathBuf::from).collect()))
 }
 
 /// Whether the argument names a preset and not a file of points.
 fn is_preset(path: &OsString) -> bool {
     let shown = Path::new(path);
     let is_file = shown.is_file() && shown.extension().is_none_or(|ending| ending != "toml");
-    let ends = shown.extension().is_some_and(|ending| ending == "toml");
-    ends || (path != stream::STANDARD && !is_file && problem::store().resolve(path).is_ok())
+    let ends = shown.extension().is_some_and(|ending| ending == "toml") || path == stream::STANDARD;
+    ends || (!is_file && problem::store().resolve(path).is_ok())
 }

@@ -171,7 +171,9 @@ fn keep<R: Background>(model: &mut Model, found: Found) -> Vec<Effect> {
     }
     let (what, is_whole) = match found.what {
         Answer::Percent(percent) => {
-            slot.percent = percent;
+            if newest == Some(found.id) {
+                slot.percent = percent;
+            }
             return Vec::new();
         }
         Answer::Part(what) => (what, false),

@@ -123,7 +123,7 @@ fn told(fit: &Fit) -> String {
         (Ending::Rounds, _) => "not converged, the best so far".to_owned(),
         (Ending::Cancelled, _) => "stopped, the best so far".to_owned(),
         (Ending::Converged, Verdict::Describes) => "fitted".to_owned(),
-        (Ending::Converged, verdict) => format!("fitted, but {}", verdict.sentence()),
+        (Ending::Converged, verdict) => format!("fitted, but {}", verdict.sentence_for(&fit.reasons)),
     };
     let holds = (fit.verdict == Verdict::Describes).then(|| fit.verdict.sentence());
     let reasons = fit.reasons.iter().map(|reason| &*reason.sentence);

@@ -33,7 +33,12 @@ impl Background for MapData {
     const NAME: &'static str = "map";
 
     fn wanted(model: &Model) -> Want<MapKey> {
-        if !model.shown_views().contains(&View::Map) || model.is_computing() {
+        let is_shown = model.shown_views().contains(&View::Map);
+        // One that was given up is computed again once it is shown again.
+        if !is_shown && model.results.percent::<Self>().is_none() {
+            return Want::Not;
+        }
+        if !is_shown || model.is_computing() {
             return Want::Later;
         }
         let axes = model.map_axes.clone().unwrap_or_else(|| MapAxes::usual(&model.preset));
@@ -58,7 +63,9 @@ impl Background for MapData {
     }
 
     fn given_up(model: &mut Model) -> Option<String> {
-        Self::says(model).map(|_| format!("the map is given up: {} takes other axes", Id::Edit.named()))
+        Self::says(model).map(|_| {
+            "the map is given up: it is computed when it is shown again, or with other axes".to_owned()
+        })
     }
 }
 

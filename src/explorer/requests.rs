@@ -69,8 +69,8 @@ pub(super) fn change(model: &mut Model, preset: Preset) -> Vec<Effect> {
     let upto = model.parameter + 1;
     let listed: Vec<_> = model.knobs().into_iter().take(upto).map(|(row, _)| row.key.clone()).collect();
     let rate = model.preset.row(edge::RATE).zip(model.preset.get(edge::RATE));
-    let rate =
-        rate.filter(|_| model.preset.path.control != preset.path.control && preset.edge.rate.is_none());
+    let [before, now] = [&model.preset, &preset].map(|preset| preset.path.control == Control::Force);
+    let rate = rate.filter(|_| before != now && preset.edge.rate.is_none());
     if let Some((row, value)) = rate {
         let rate = labelled(&row, &value, &model.preset.units);
         model.tell(Level::Info, format!("{rate} is dropped: it is no rate under the new control"));

@@ -135,8 +135,11 @@ impl Progress for TaskProgress<'_> {
         // From 0 to 100.
         #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss)]
         let percent = (share.clamp(0.0, 1.0) * 100.0) as u8;
-        if percent >= self.percent.load(Ordering::Acquire) + 5 {
-            self.percent.store(percent, Ordering::Release);
+        let told = self.percent.load(Ordering::Acquire);
+        let is_more = percent >= told + 5;
+        if is_more
+            && self.percent.compare_exchange(told, percent, Ordering::AcqRel, Ordering::Acquire).is_ok()
+        {
             self.tell(Answer::Percent(percent));
         }
     }

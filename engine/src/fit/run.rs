@@ -6,8 +6,7 @@ use super::determined::{Determined, determined};
 use super::fitted::{Fitted, too_small, unmoved, values};
 use super::intervals::intervals;
 use super::judge::{
-    Evidence, UNTOLD, doubts, extent, of_first_pull, of_hidden, of_sparse, of_spring, of_unclear, reasons,
-    unseen,
+    Evidence, doubts, extent, of_first_pull, of_hidden, of_sparse, of_spring, of_unclear, reasons, unseen,
 };
 use super::laid::laid;
 use super::least_squares::Ending;
@@ -375,10 +374,6 @@ fn of_no_free_part(problem: &FitProblem, branches: &Branches) -> Option<String> 
 fn verdict(ending: Ending, is_determined: bool, reasons: &[Reason]) -> Verdict {
     match (ending, is_determined) {
         (Ending::Converged, true) if reasons.is_empty() => Verdict::Describes,
-        // That the points do not tell whether there is a law of speed says nothing against the model.
-        (Ending::Converged, true) if reasons.iter().all(|reason| reason.kind == UNTOLD) => {
-            Verdict::NotDetermined
-        }
         (Ending::Converged, true) => Verdict::DoesNotDescribe,
         (Ending::Converged, false) => Verdict::NotDetermined,
         _ => Verdict::NotConverged,

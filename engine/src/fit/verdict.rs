@@ -2,6 +2,7 @@
 //!
 //! Every test here has a false-alarm rate of its own, and all of them together flag at most one right fit in a hundred.
 
+use super::judge::UNTOLD;
 use serde::Serialize;
 
 /// What a fit comes to.
@@ -46,6 +47,18 @@ impl Verdict {
             }
             Self::NotDetermined => "the points do NOT determine the values",
             Self::NotConverged => "the fit did NOT converge: these are the best values so far",
+        }
+    }
+
+    /// The same for these reasons: that the points do not show a law of speed says nothing against the model.
+    pub fn sentence_for(self, reasons: &[Reason]) -> &'static str {
+        let is_untold = self == Self::DoesNotDescribe
+            && !reasons.is_empty()
+            && reasons.iter().all(|reason| reason.kind == UNTOLD);
+        if is_untold {
+            "the points do NOT show whether this model holds: do not believe the values or their errors"
+        } else {
+            self.sentence()
         }
     }
 }

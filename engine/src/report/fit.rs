@@ -453,7 +453,7 @@ impl FitReport {
     pub fn text(&self) -> String {
         let units = &self.shown;
         let mut text = format!("{}: force over {}\n", self.file, self.abscissa);
-        let _ = writeln!(text, "verdict: {}", self.verdict.sentence());
+        let _ = writeln!(text, "verdict: {}", self.verdict.sentence_for(&self.reasons));
         for reason in &self.reasons {
             let _ = writeln!(text, "reason: {}", reason.sentence);
         }

@@ -90,10 +90,12 @@ fn tell_bare(model: &mut Model, key: &str, text: &str, changed: &Preset) {
 
 /// Says that a value has no effect yet.
 fn tell_idle(model: &mut Model, key: &str, changed: &Preset) {
-    let edge = &changed.edge;
-    if !edge::KEYS.contains(&key) || changed.get(key).is_none() {
+    // A work of adhesion of closing makes a dead band, whatever the speed.
+    let is_of_speed = edge::KEYS.contains(&key) && key != edge::CLOSING_ADHESION;
+    if !is_of_speed || changed.get(key).is_none() {
         return;
     }
+    let edge = &changed.edge;
     let missing = match edge.exponent {
         None => "edge.exponent gives the edge a speed",
         Some(_) if edge.rate.is_none() && edge.steps.is_empty() => "path.rate or path.steps is set",

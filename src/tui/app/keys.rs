@@ -46,8 +46,9 @@ impl App {
             effects.extend(self.key(KeyEvent { modifiers: key.modifiers - KeyModifiers::ALT, ..key }));
             return effects;
         }
-        // Where nothing can be drawn, nobody sees what a key does: it may only quit.
-        if is_too_small(self.screen) && self.keymap.command(key) != Some(Id::Quit) {
+        // Where nothing can be drawn, nobody sees what a key does: it may only quit, and answer what that asks.
+        let answers = matches!(self.overlay, Some(Dialog::Confirm(_)));
+        if is_too_small(self.screen) && !answers && self.keymap.command(key) != Some(Id::Quit) {
             return Vec::new();
         }
         let mut effects = self.pause(key);

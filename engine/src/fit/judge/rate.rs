@@ -25,6 +25,7 @@ use super::edge::{EdgeMotion, moving};
 use super::scores::{MOST_OF_NEIGHBOURS, score};
 use super::untold::{UNTOLD, untold};
 use crate::elementary::{ln, pow};
+use crate::measured::Segment;
 use crate::units::number::short;
 
 /// The kinds of the reasons that are found here.
@@ -108,9 +109,11 @@ fn grows(
         let [least, most] = (0..problem.data.len())
             .filter_map(|i| edge.speed(i))
             .fold([f64::INFINITY, 0.0], |[lo, hi], speed| [lo.min(speed), hi.max(speed)]);
+        let from_end =
+            if edge.is_backward { ", if the rows are those of a retraction from its end" } else { "" };
         let times = pow((least / most).max(SLOWEST), -edge.sense() * n.min(1.0));
         let sentence = format!(
-            "a work of adhesion that {} with the speed of the {} describes the points better{}: that of the fastest \
+            "a work of adhesion that {} with the speed of the {} describes the points better{}{from_end}: that of the fastest \
              rows is about {} times that of the slowest ({} standard errors). No quasi-static curve has such an edge",
             edge.verb(),
             edge.noun(),
@@ -122,7 +125,9 @@ fn grows(
         return Some(Reason::new("rate", n, sentence));
     }
     let verb = edge.verb();
-    let [n, t] = Some(by_row).filter(|of| !edge.is_timed() && is_found(*of))?;
+    // Along an approach the noise of a radius would look like such a law.
+    let is_told = !edge.is_timed() && edge.segment == Segment::Retraction && !edge.is_backward;
+    let [n, t] = Some(by_row).filter(|of| is_told && is_found(*of))?;
     let sentence = format!(
         "a work of adhesion that {verb} along the {} describes the points better ({} standard \
          errors), and so does one that {verb} with the speed of the {}: a column of times would decide",

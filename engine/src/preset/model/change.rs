@@ -61,6 +61,8 @@ impl Preset {
         let order = |row: &Parameter| match &*row.key {
             key if CHOOSERS.contains(&key) => 0,
             data::COLUMNS => 1,
+            // A control takes away the rate that was, and not one that is given with it.
+            edge::RATE => 3,
             _ => 2,
         };
         plain.sort_by_key(|(row, _)| order(row));
@@ -218,7 +220,8 @@ impl Preset {
     /// As [`assign`](Self::assign), for all at once; the preset is left as it was.
     pub fn assign_all(&mut self, assignments: &[(Key, String)]) -> Result<(), Invalid> {
         let mut changed = self.clone();
-        if assignments.iter().try_for_each(|(key, text)| changed.assign(key, text)).is_err() {
+        let (rates, others): (Vec<_>, Vec<_>) = assignments.iter().partition(|(key, _)| key == edge::RATE);
+        if others.into_iter().chain(rates).try_for_each(|(key, text)| changed.assign(key, text)).is_err() {
             changed = self.clone();
             let values = assignments.iter().map(|(key, text)| Ok((&**key, self.assigned(key, text)?)));
             changed.set_all(values.collect::<Result<Vec<_>, Invalid>>()?)?;

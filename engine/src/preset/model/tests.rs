@@ -312,6 +312,11 @@ fn a_rate_of_a_length_is_none_of_a_force() {
     assert_eq!(set(&[("path.rate", "3 uN/s")]), Some(3e-6));
     assert_eq!(set(&[("path.control.stiffness", "5 N/m")]), None);
     assert_eq!(set(&[("path.control", "force"), ("path.rate", "4 uN/s")]), Some(4e-6));
+    assert_eq!(set(&[("path.rate", "3e-6"), ("path.control", "displacement")]), Some(3e-6));
+    assert_eq!(set(&[("path.rate", "4 uN/s"), ("path.control", "force")]), Some(4e-6));
+    let numbers = [("path.rate", 5e-6.into()), ("path.control.stiffness", 5.0.into())];
+    preset.set_all(numbers).unwrap();
+    assert_eq!(preset.edge.rate, Some(5e-6));
     // In reduced units a number has no unit to lose.
     let mut preset = wavy();
     preset.assign("path.rate", "0.5").unwrap();
