@@ -102,6 +102,11 @@ impl EdgeMotion {
         self.clock == Clock::Times
     }
 
+    /// Whether the number of the row stands for a time: along an approach the noise of a radius would look like a law by it.
+    pub(super) fn tells_by_row(&self) -> bool {
+        !self.is_timed() && !self.is_backward && self.segment == Segment::Retraction
+    }
+
     /// The speed at a point, never less than its error: nothing says how much slower the edge is.
     pub(super) fn speed(&self, i: usize) -> Option<f64> {
         self.speeds[i].map(|speed| hypot(speed.value.max(0.0), speed.error))

@@ -25,7 +25,6 @@ use super::edge::{EdgeMotion, moving};
 use super::scores::{MOST_OF_NEIGHBOURS, score};
 use super::untold::{UNTOLD, untold};
 use crate::elementary::{ln, pow};
-use crate::measured::Segment;
 use crate::units::number::short;
 
 /// The kinds of the reasons that are found here.
@@ -51,7 +50,7 @@ pub(super) fn of_rate(evidence: Evidence) -> Option<Reason> {
     // listed from their end is told only where it is found: as a doubt it would hang over every approach.
     let tested: Vec<_> = tested.into_iter().filter(|(edge, _)| !edge.is_backward).collect();
     let all = tested.iter().flat_map(|(edge, [[_, by_speed], [_, by_row]])| {
-        [*by_speed, if edge.is_timed() { f64::NEG_INFINITY } else { *by_row }]
+        [*by_speed, if edge.tells_by_row() { *by_row } else { f64::NEG_INFINITY }]
     });
     let lean = all.fold(f64::NEG_INFINITY, f64::max);
     found.or_else(|| {
@@ -125,9 +124,7 @@ fn grows(
         return Some(Reason::new("rate", n, sentence));
     }
     let verb = edge.verb();
-    // Along an approach the noise of a radius would look like such a law.
-    let is_told = !edge.is_timed() && edge.segment == Segment::Retraction && !edge.is_backward;
-    let [n, t] = Some(by_row).filter(|of| is_told && is_found(*of))?;
+    let [n, t] = Some(by_row).filter(|of| edge.tells_by_row() && is_found(*of))?;
     let sentence = format!(
         "a work of adhesion that {verb} along the {} describes the points better ({} standard \
          errors), and so does one that {verb} with the speed of the {}: a column of times would decide",
