@@ -112,12 +112,12 @@ pub(super) enum Answer {
 }
 
 /// Receives answers.
-pub(super) type Reply<'a> = &'a mut (dyn FnMut(Found) + Send);
+pub(super) type TellFound<'a> = &'a mut (dyn FnMut(Found) + Send);
 
 /// Watches a task, and passes on how far it has come.
 struct TaskProgress<'a> {
     progress: &'a (dyn Progress + Sync),
-    reply: Mutex<Reply<'a>>,
+    reply: Mutex<TellFound<'a>>,
     task: &'a Task,
     percent: AtomicU8,
 }
@@ -151,7 +151,7 @@ impl Progress for TaskProgress<'_> {
 
 impl Task {
     /// Does the work, and hands over its results.
-    pub fn run(&self, progress: &(dyn Progress + Sync), reply: Reply<'_>) {
+    pub fn run(&self, progress: &(dyn Progress + Sync), reply: TellFound<'_>) {
         let told = TaskProgress { progress, reply: Mutex::new(reply), task: self, percent: AtomicU8::new(0) };
         if let Some(what) = (self.work)(&told, &mut |part| told.tell(Answer::Part(part))) {
             told.tell(Answer::Whole(what));
