@@ -26,7 +26,6 @@ mod untold;
 pub(super) use range::{of_first_pull, unseen};
 pub(super) use scores::BRANCHES;
 pub(super) use spring::of_spring;
-pub(super) use untold::UNTOLD;
 
 use super::fitted::Fitted;
 use super::fitted::NORMAL;

@@ -2,8 +2,10 @@
 //!
 //! Every test here has a false-alarm rate of its own, and all of them together flag at most one right fit in a hundred.
 
-use super::judge::UNTOLD;
 use serde::Serialize;
+
+/// The kind of the reason that the points do not show whether there is a law of speed.
+pub(super) const UNTOLD: &str = "speed";
 
 /// What a fit comes to.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize)]

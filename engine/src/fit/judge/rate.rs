@@ -19,11 +19,11 @@ use super::super::chance::beyond_t;
 use super::super::problem::FitProblem;
 use super::super::solve::SolvedFit;
 use super::super::track::Mover;
-use super::super::verdict::Reason;
+use super::super::verdict::{Reason, UNTOLD};
 use super::Evidence;
 use super::edge::{EdgeMotion, moving};
 use super::scores::{MOST_OF_NEIGHBOURS, score};
-use super::untold::{UNTOLD, untold};
+use super::untold::untold;
 use crate::elementary::{ln, pow};
 use crate::units::number::short;
 

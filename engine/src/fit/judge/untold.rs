@@ -21,7 +21,7 @@ use super::super::options::letter;
 use super::super::problem::FitProblem;
 use super::super::solve::solve;
 use super::super::track::Mover;
-use super::super::verdict::Reason;
+use super::super::verdict::{Reason, UNTOLD};
 use super::Evidence;
 use super::edge::EdgeMotion;
 use crate::elementary::{exp_m1, hypot, pow};
@@ -34,8 +34,6 @@ use nalgebra::DVector;
 use std::collections::BTreeMap;
 use std::f64::consts::TAU;
 
-/// The kind of the reason found here.
-pub(in crate::fit) const UNTOLD: &str = "speed";
 /// v₀ over the median speed.
 const REFERENCE: f64 = 3.0;
 /// A law that is off by no more than this many standard errors is as good; the limit is larger by the standard errors
