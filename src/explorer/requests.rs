@@ -7,6 +7,7 @@ use super::node::NodeKind;
 use super::pins::labelled;
 use pulloff_engine::preset::{Key, Preset, Value, edge};
 use pulloff_engine::problem::Control;
+use pulloff_engine::units::UnitSystem;
 use std::path::PathBuf;
 use std::sync::Arc;
 
@@ -70,7 +71,8 @@ pub(super) fn change(model: &mut Model, preset: Preset) -> Vec<Effect> {
     let listed: Vec<_> = model.knobs().into_iter().take(upto).map(|(row, _)| row.key.clone()).collect();
     let rate = model.preset.row(edge::RATE).zip(model.preset.get(edge::RATE));
     let [before, now] = [&model.preset, &preset].map(|preset| preset.path.control == Control::Force);
-    let rate = rate.filter(|_| before != now && preset.edge.rate.is_none());
+    let rate =
+        rate.filter(|_| before != now && preset.units != UnitSystem::Reduced && preset.edge.rate.is_none());
     if let Some((row, value)) = rate {
         let rate = labelled(&row, &value, &model.preset.units);
         model.tell(Level::Info, format!("{rate} is dropped: it is no rate under the new control"));

@@ -45,7 +45,7 @@ pub fn figure(subject: &Subject<'_>) -> Figure {
     let rows: Vec<&SpeedRow> = report.rows.iter().filter(known).collect();
     figure.marks.extend(rows.iter().step_by(rows.len().div_ceil(DRAWN).max(1)).filter_map(|row| {
         let speed = row.speed?;
-        let sign = Sign::Measured { loading: row.segment == Segment::Approach.name(), apart: false };
+        let sign = Sign::Measured { loading: is_closing(row), apart: false };
         Some(Mark { sign, at: at(speed.abs(), row.energy_release_rate) })
     }));
     // The approach first, because each is drawn as one.
@@ -58,7 +58,7 @@ pub fn figure(subject: &Subject<'_>) -> Figure {
             (Motion::Opening, Role::Law, "law of the edge"),
             (Motion::Closing, Role::Loading, "as it closes"),
         ] {
-            let goes = |row: &&SpeedRow| row.speed.is_some_and(|speed| speed * motion.sense() < 0.0);
+            let goes = |row: &&SpeedRow| is_closing(row) == (motion == Motion::Closing);
             let Some(released) = of_law(subject.preset, motion).filter(|_| rows.iter().any(goes)) else {
                 continue;
             };
@@ -69,6 +69,11 @@ pub fn figure(subject: &Subject<'_>) -> Figure {
     let places = figure.marks.iter().map(|mark| mark.at);
     figure.bounds = Bounds::of(places.chain(figure.lines.iter().flat_map(|line| line.points.clone())));
     figure
+}
+
+/// Whether the edge closes at a row: the sign of a speed near its error would be that of the noise.
+fn is_closing(row: &SpeedRow) -> bool {
+    row.segment == Segment::Approach.name()
 }
 
 /// G over the speed of an edge in this motion, by the law of a preset that has one.

@@ -127,7 +127,7 @@ quantities! {
         Stage::Pull(|run| run.dissipated.map(Cell::Number));
     "tension_peaks" "" Count "force minima of that pull with a fall and a rise of more than 1 % of P_c":
         Stage::Pull(|run| Some(Cell::Count(run.tension_peaks.len())));
-    "top_edge_speed" "v" Speed "largest speed of the edge in the snaps of that pull, or at its largest force":
+    "top_edge_speed" "v" Speed "largest speed of the edge in the snaps of that pull, or at its peak":
         Stage::Pull(|run| run.top_edge_speed.map(Cell::Number));
     "limit_points" "" Count "limit points of the control on the curve": Stage::Limits;
     "start_contact_radius" "s" Length "contact radius at the start, the largest of the curve":

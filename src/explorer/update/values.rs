@@ -80,10 +80,8 @@ fn tell_bare(model: &mut Model, key: &str, text: &str, changed: &Preset) {
     let unit = row.unit_in(&changed.units).filter(|_| is_bare && row.unit.is_none());
     if let Some(unit) = unit.filter(|unit| (unit.from_si(1.0) - 1.0).abs() > 1e-9) {
         let now = greek(&labelled(&row, &value, &changed.units));
-        let said = format!(
-            "{now} now: a bare number is SI, as in files; one in {0} needs its unit, as in {key}=1{0}",
-            unit.ascii()
-        );
+        let said =
+            format!("{now} now: a bare number is SI, as in files; one in {} needs its unit", unit.ascii());
         model.tell(Level::Info, said);
     }
 }

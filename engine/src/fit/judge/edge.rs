@@ -29,11 +29,11 @@ impl Clock {
 
 /// What is known of the edge at the points of a problem.
 pub(super) struct EdgeMotion {
-    /// |ds/dt|, by the number of the point; none except for the branches in contact that are looked at.
+    /// −ds/dt of an edge that opens and ds/dt of one that closes, by the number of the point; none for other branches.
     pub(super) speeds: Vec<Option<Speed>>,
     /// The number of the row in its branch, divided by the number of rows there.
     pub(super) order: Vec<f64>,
-    /// Whether the edge opens, which costs more at a speed, or closes, which gains less.
+    /// How its branches are read: in a retraction the edge opens, in an approach it closes.
     pub(super) segment: Segment,
     /// The clock that the speeds are taken by.
     pub(super) clock: Clock,

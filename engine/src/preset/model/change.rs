@@ -32,8 +32,8 @@ impl Preset {
     /// `gap.shape` drops the keys of the old shape, and keeps the old waves, or takes the proportions of the paper's Fig. 9. A
     /// `gap.formula` keeps the parameters it has in common with the old one; its others begin with the value of an old
     /// one with a similar name, or with 1. A `basis.kind` drops the keys of the old basis and takes the defaults of the
-    /// new one. In SI a control of another dimension drops the rate. A group (see [`groups`]) changes the values it follows from. The rows of a `gap.file` come from the
-    /// preset's files, relative to the folder of the previous file.
+    /// new one. In SI a control of another dimension drops the rate. A group (see [`groups`]) changes the values it
+    /// follows from. The rows of a `gap.file` come from the preset's files, relative to the folder of the previous file.
     ///
     /// # Errors
     /// The key is unknown, or the preset would no longer be valid; it is left as it was.
@@ -301,10 +301,10 @@ fn pure(row: &Parameter, text: &str) -> Result<f64, Invalid> {
 pub(in crate::preset) fn put(values: &mut Values, row: &Parameter, value: Value) {
     match (&*row.key, value) {
         ("path.control.stiffness", Value::Number(k)) => {
-            values.insert("path.control".into(), Control::Stiffness(k).into());
+            values.insert(CONTROL.into(), Control::Stiffness(k).into());
         }
         ("path.control.stiffness", Value::Typed(text)) => {
-            values.insert("path.control".into(), Value::Typed(text));
+            values.insert(CONTROL.into(), Value::Typed(text));
         }
         (_, value) => {
             values.insert(row.key.clone(), value);
