@@ -6,7 +6,8 @@ use super::determined::{Determined, determined};
 use super::fitted::{Fitted, too_small, unmoved, values};
 use super::intervals::intervals;
 use super::judge::{
-    Evidence, doubts, extent, of_first_pull, of_hidden, of_sparse, of_spring, of_unclear, reasons, unseen,
+    Evidence, doubts, extent, of_contact, of_first_pull, of_hidden, of_sparse, of_spring, of_unclear,
+    reasons, unseen,
 };
 use super::laid::laid;
 use super::least_squares::Ending;
@@ -30,13 +31,14 @@ use super::uncertain::given;
 use super::verdict::{Reason, Verdict};
 use crate::elementary::{ln, pow};
 use crate::measured::branches::FLOOR;
-use crate::measured::{Abscissa, Branches, Noise, Origin, Segment};
+use crate::measured::{Abscissa, Branches, FreePart, Noise, Origin, Segment};
 use crate::preset::{Preset, edge};
 use crate::problem::Start;
 use crate::progress::{Progress, ProgressPart};
 use crate::units::Quantity;
 use crate::units::number::{said, short, significant};
 use nalgebra::{DMatrix, DVector};
+use std::borrow::Cow;
 
 /// Fits the free keys of `preset` to `branches`.
 pub(super) fn fit_branches(
@@ -60,7 +62,7 @@ pub(super) fn fit_branches(
 #[derive(Clone)]
 pub(super) struct Posed<'a> {
     preset: &'a Preset,
-    branches: &'a Branches,
+    branches: Cow<'a, Branches>,
     options: &'a Options,
     pub(super) problem: FitProblem,
     starts: Vec<Tried>,
@@ -71,15 +73,45 @@ pub(super) struct Posed<'a> {
 }
 
 impl<'a> Posed<'a> {
-    /// Poses and solves the fit of the free keys of `preset` to `branches`.
+    /// Poses and solves the fit of the free keys of `preset` to `branches`. A last row that lies alone behind a jump is apart if
+    /// the curve through the others leads nowhere near it.
     pub(super) fn new(
         preset: &'a Preset,
         branches: &'a Branches,
         options: &'a Options,
         progress: &dyn Progress,
     ) -> Result<Self, FitError> {
+        /// A row costs more than this, in squares of the scale of the residuals, where the curve misses it.
+        const MISSED: f64 = 8.0;
+        let lone = branches.with_lone_apart().filter(|_| options.asked.free == FreePart::Found);
+        let Some(apart) = lone else { return Self::of(preset, Cow::Borrowed(branches), options, progress) };
+        let [in_contact, apart] = [(Cow::Borrowed(branches), [0.0, 0.4]), (Cow::Owned(apart), [0.4, 0.8])]
+            .map(|(branches, part)| Self::of(preset, branches, options, &ProgressPart::new(progress, part)));
+        // σ of the force differs from fit to fit.
+        let cost = |posed: &Self, cost: f64| cost * posed.problem.sigma[1].powi(2);
+        let is_missed = |all: &Self, apart: &Self| {
+            let most = apart.solved.minimum.cost + MISSED * apart.solved.scale.powi(2);
+            cost(all, all.solved.minimum.cost) > cost(apart, most)
+        };
+        let has_force = |apart: &Self| of_contact(&apart.problem, &apart.solved).is_none();
+        match (in_contact, apart) {
+            (Ok(in_contact), Ok(apart)) if !is_missed(&in_contact, &apart) || !has_force(&apart) => {
+                Ok(in_contact)
+            }
+            (_, Ok(apart)) => Ok(apart),
+            (in_contact, Err(_)) => in_contact,
+        }
+    }
+
+    /// The same, with all rows that `branches` have.
+    fn of(
+        preset: &'a Preset,
+        branches: Cow<'a, Branches>,
+        options: &'a Options,
+        progress: &dyn Progress,
+    ) -> Result<Self, FitError> {
         let mut notes = branches.notes.clone();
-        let mut problem = posed(preset, branches, options, &mut notes)?;
+        let mut problem = posed(preset, &branches, options, &mut notes)?;
         // Without rows apart, neighbours tell how well the force is known, never the residuals themselves.
         let of_neighbours = branches.noise.from[1] == Origin::Neighbours;
         // For radii, only the slope of the curve tells the noise of x and of P apart.
@@ -101,7 +133,7 @@ impl<'a> Posed<'a> {
             (starts, solved) = found(&mut problem)?;
         }
         let approached;
-        (problem, solved, approached) = of_start(problem, solved, (branches, options), &mut notes, &solve)?;
+        (problem, solved, approached) = of_start(problem, solved, (&branches, options), &mut notes, &solve)?;
         let has_snaps =
             |paths: &Paths| [Segment::Approach, Segment::Retraction].iter().any(|of| paths.of(*of).snaps > 0);
         if problem.paths(&solved.minimum.parameters).is_some_and(|paths| has_snaps(&paths)) {
@@ -122,7 +154,7 @@ impl<'a> Posed<'a> {
         if preset.data.uncertain.is_empty() {
             solved = of_tare(&mut problem, solved, options.robust, (&mut notes, progress));
         }
-        notes.extend(of_no_free_part(&problem, branches));
+        notes.extend(of_no_free_part(&problem, &branches));
         Ok(Self { preset, branches, options, problem, starts, solved, notes, approached })
     }
 
@@ -150,6 +182,7 @@ impl<'a> Posed<'a> {
         progress: &dyn Progress,
     ) -> Result<Fit, FitError> {
         let Self { preset, branches, options, problem, starts, solved, mut notes, approached } = self;
+        let branches = &*branches;
         let u = &solved.minimum.parameters;
         let is_unseen;
         (what, is_unseen) = with_range(&problem, &solved, (what, &scatter), options.robust, progress);

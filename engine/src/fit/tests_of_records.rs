@@ -112,6 +112,31 @@ fn the_last_row_of_a_retraction_may_be_apart() {
 }
 
 #[test]
+fn one_or_two_rows_behind_the_jump_of_a_retraction_alone_are_apart() {
+    let body = Body { state: &sphere(1.0, 0.02, 1.0), compliance: 0.0, most: 1.1 };
+    let points = body.samples(400);
+    // The rows before it rise by up to 0.01.
+    let jump = (201..400).find(|i| points.force[*i] - points.force[i - 1] > 0.03).unwrap();
+    for seed in 0..6 {
+        for behind in 0..3 {
+            let mut normal = Normal::new(seed);
+            let rows = 200..jump + behind;
+            let retraction = Points {
+                x: points.x[rows.clone()].to_vec(),
+                force: points.force[rows.clone()].iter().map(|force| force + 5e-4 * normal.next()).collect(),
+                segments: points.segments.as_ref().map(|of| of[rows].to_vec()),
+                ..points.clone()
+            };
+            let fit = found(&retraction, &[E, W, OFFSET], "");
+            let what = format!("{seed}, {behind}: {:?} {:?}", fit.reasons, fit.parameters);
+            assert_eq!(fit.verdict, Verdict::Describes, "{what}");
+            assert_eq!(fit.rows.retraction.free, behind, "{what}");
+            assert!(off(&fit, &[1.0, 0.02, 0.0]).iter().all(|z| z.abs() < 4.0), "{what}");
+        }
+    }
+}
+
+#[test]
 fn a_curve_that_bends_within_the_noise_of_the_radius_has_no_bias() {
     const SEEDS: u64 = 8;
     let state = sphere(1.0, 0.02, 1.0);

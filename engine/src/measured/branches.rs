@@ -72,6 +72,26 @@ impl Branches {
         SHARE * forces.fold(0.0, f64::max)
     }
 
+    /// The same with a last row as apart that may lie alone behind a jump, where no rows are apart; a note says which. One row
+    /// does not tell a jump from a record that ends at its last contact.
+    pub fn with_lone_apart(&self) -> Option<Self> {
+        if self.baseline.is_some() || self.abscissa == Abscissa::Radius {
+            return None;
+        }
+        let mut other = self.clone();
+        for branch in &mut other.list {
+            let Some(row) = branch.lone_apart() else { continue };
+            other.notes.push(format!(
+                "row {row}, the last of the {}, is taken to be apart: it lies behind a jump that the rows in contact do not show. If \
+                 it is not, set --free-part none or leave it out",
+                branch.segment.name()
+            ));
+        }
+        other.baseline =
+            median(other.list.iter().flat_map(|branch| &branch.free).map(|point| point.force).collect());
+        other.baseline.is_some().then_some(other)
+    }
+
     /// A sentence on signs that were assumed although the points leave them open.
     pub fn doubt(&self) -> Option<String> {
         self.or.map(|_| {

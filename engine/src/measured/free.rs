@@ -1,6 +1,6 @@
 //! A branch divided into its parts: the rows in contact, those within the jump, and those apart.
 
-use super::apart::{SPARSE, jump};
+use super::apart::{SPARSE, jump, of_last};
 use super::asked::{FreePart, ValueRange};
 use super::ends::{filtered, free_end, stands_still};
 use super::noise::{BEYOND, END_ROWS, END_SHARE, FLOOR, Noise, median, noise_of, range};
@@ -25,6 +25,15 @@ pub struct MeasuredBranch {
 pub(super) type OrderedBranch = (MeasuredBranch, Vec<MeasuredPoint>);
 
 impl MeasuredBranch {
+    /// Takes the last row in contact as apart if it may lie alone behind a jump, and returns its number.
+    pub(super) fn lone_apart(&mut self) -> Option<usize> {
+        let (x, force): (Vec<f64>, Vec<f64>) =
+            self.attached.iter().map(|point| (point.x, point.force)).unzip();
+        of_last(&x, &force, 1).filter(|_| self.free.is_empty())?;
+        self.free.extend(self.attached.pop());
+        self.free.first().map(|point| point.row)
+    }
+
     /// Drops the rows around the jump that noise in x may have put on the wrong side.
     fn clears_jump(&mut self, noise: &Noise) {
         /// Rows within this many σ of x from the jump may lie on either side.

@@ -9,6 +9,7 @@ use super::super::solve::SolvedFit;
 use super::super::verdict::Reason;
 use super::ROUNDING;
 use crate::measured::branches::median;
+use crate::text::counted;
 use crate::units::number::short;
 
 /// The share of right fits that are flagged.
@@ -23,16 +24,16 @@ const COUNTED: f64 = 4.0;
 pub(super) fn of_apart(problem: &FitProblem, solved: &SolvedFit, scatter: &Scatter) -> Vec<Reason> {
     let mut reasons = Vec::new();
     let tau = scatter.correlation.rows();
-    let counted = scatter.apart as f64 / tau;
-    if scatter.correlation.share > 0.0 && counted < COUNTED {
+    let independent = scatter.apart as f64 / tau;
+    if scatter.correlation.share > 0.0 && independent < COUNTED {
         reasons.push(Reason::new(
             "drift",
-            counted,
+            independent,
             format!(
                 "the force is not constant where the bodies are apart: {} correlated rows count as only {}. \
                  It drifts",
                 scatter.apart,
-                short(counted, 2)
+                short(independent, 2)
             ),
         ));
     }
@@ -42,17 +43,17 @@ pub(super) fn of_apart(problem: &FitProblem, solved: &SolvedFit, scatter: &Scatt
 
 /// Rows taken to be apart that do not have the force of bodies apart: a record that ends in contact, and is flat there,
 /// looks as if it ended apart.
-pub(super) fn of_contact(problem: &FitProblem, solved: &SolvedFit) -> Option<Reason> {
+pub(in super::super) fn of_contact(problem: &FitProblem, solved: &SolvedFit) -> Option<Reason> {
     /// The baseline goes through the rows apart, unless those in contact contradict them this far, in σ.
     const FAR: f64 = 10.0;
     (0..problem.branches()).find_map(|branch| {
         let rows = problem.rows(solved, branch, true, 0);
         let off = median(rows.iter().map(|row| row.residual.abs()).collect()).filter(|off| *off > FAR)?;
         let sentence = format!(
-            "the {} rows of the {} that are taken to be apart are {} sigma off the force of bodies apart: if they \
-             are still in contact, say so with --free-part none or data.free_part",
-            rows.len(),
+            "where the {} is taken to be apart ({}), the force is {} sigma off that of bodies apart: if they are still \
+             in contact there, say so with --free-part none or data.free_part",
             problem.data[rows.first()?.index].segment.name(),
+            counted(rows.len(), "row"),
             short(off, 2)
         );
         Some(Reason::new("not-apart", off, sentence))
