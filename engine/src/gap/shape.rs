@@ -139,7 +139,38 @@ impl Shape {
         let width = near.min(contact_radius);
         let radii = (0..RADII).map(|i| contact_radius - width * i as f64 / RADII as f64);
         let steepest = radii.map(|r| self.jet(r).first.abs()).fold(0.0, f64::max);
+        // Of the other shapes the waves tell how fine they are.
+        let is_any = matches!(self, Self::Formula(_));
+        let steepest =
+            if is_any { self.steepest_within(contact_radius, steepest.max(STEEP)) } else { steepest };
         (steepest > STEEP).then_some(steepest)
+    }
+
+    /// The largest slope within this radius, if it is larger than `known`: radii are divided where the bound on the slope exceeds
+    /// what is known, so that no feature is too narrow. Without bounds, `known`.
+    fn steepest_within(&self, contact_radius: f64, known: f64) -> f64 {
+        /// It is found to this factor, unless more than so many intervals would have to be examined.
+        const FACTOR: f64 = 1.2;
+        const MOST: usize = 1 << 13;
+        let mut steepest = known;
+        let mut open = vec![[0.0, contact_radius]];
+        let mut examined = 0;
+        while !open.is_empty() && examined < MOST {
+            examined += open.len();
+            let mut halves = Vec::new();
+            for [lo, hi] in open {
+                let (middle, radius) = (0.5 * (lo + hi), 0.5 * (hi - lo));
+                let disc = ComplexDisc { centre: middle, radius, branch: middle };
+                let Some(bound) = self.slope_bound(disc) else { return known };
+                let here = self.jet(middle).first.abs();
+                steepest = if here.is_finite() { steepest.max(here) } else { steepest };
+                if !(bound <= FACTOR * steepest) && lo < middle && middle < hi {
+                    halves.extend([[lo, middle], [middle, hi]]);
+                }
+            }
+            open = halves;
+        }
+        steepest
     }
 
     /// What was changed in the gap without the user asking for it, in words, with numbers as `units` show them.

@@ -1,7 +1,7 @@
 //! A formula as the gap of a problem.
 
 use super::bound::Bound;
-use super::survey::NotFinite;
+use super::survey::NoGap;
 use crate::gap::{Breaks, ComplexDisc, Gap, Jet, Parity};
 
 /// How far a formula is examined, as a multiple of the radius asked for.
@@ -27,8 +27,8 @@ impl Bound {
     /// The formula as a gap on 0 ≤ r ≤ `largest`, which must be positive and at least every radius of contact.
     ///
     /// # Errors
-    /// Where h, h' or h'' is not finite.
-    pub fn over(self, largest: f64) -> Result<FormulaGap, NotFinite> {
+    /// Where h, h' or h'' is not finite, or h jumps.
+    pub fn over(self, largest: f64) -> Result<FormulaGap, NoGap> {
         self.check(largest)?;
         Ok(self.gap(largest, largest, None))
     }
@@ -38,15 +38,13 @@ impl Bound {
     /// If `needed`, it must be finite up to there, otherwise at least near the axis.
     ///
     /// # Errors
-    /// Where h, h' or h'' is not finite.
-    pub fn from_axis(self, largest: f64, needed: bool) -> Result<FormulaGap, NotFinite> {
+    /// Where h, h' or h'' is not finite, or h jumps.
+    pub fn from_axis(self, largest: f64, needed: bool) -> Result<FormulaGap, NoGap> {
         let most = if needed { largest } else { NEAR_AXIS * largest };
         let known = match self.check(BEYOND * largest) {
             Ok(()) => None,
-            Err(NotFinite { radius, .. }) if radius <= most => {
-                return Err(NotFinite { radius, largest: most });
-            }
-            Err(NotFinite { radius, .. }) => Some(radius),
+            Err(no_gap) if no_gap.radius <= most => return Err(NoGap { largest: most, ..no_gap }),
+            Err(NoGap { radius, .. }) => Some(radius),
         };
         let waves = known.map_or(largest, |known| largest.min(known * (1.0 - f64::EPSILON)));
         Ok(self.gap(largest, waves, known))

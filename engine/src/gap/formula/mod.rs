@@ -16,7 +16,7 @@
 //! | `ball` | functions on complex discs: a value and how far it can change |
 //! | `discs` | the formula and its slope on discs and on intervals |
 //! | [`corners`] | where it is not smooth |
-//! | [`survey`] | is it finite up to a radius, and how short are its waves? |
+//! | [`survey`] | is it finite and continuous up to a radius, and how short are its waves? |
 //! | [`gap`] | the formula as the gap of a problem |
 //! | [`typed`] | its text and its parameters, with the lengths that follow |
 
@@ -33,7 +33,7 @@ pub mod typed;
 pub use crate::expression::{FormulaError, SyntaxProblem, TextPlace};
 pub use bound::Bound;
 pub use gap::FormulaGap;
-pub use survey::NotFinite;
+pub use survey::NoGap;
 pub use typed::{FormulaParameter, TypedError, TypedGap};
 
 use crate::expression::Program;

@@ -7,7 +7,8 @@
 //! edge is found by bisection.
 
 use super::bound::Bound;
-use super::fold::FormulaWave;
+use super::fold::{FormulaStep, FormulaWave};
+use crate::expression::function::Unary;
 use crate::root;
 use crate::units::number::said;
 use crate::units::{Quantity, UnitSystem};
@@ -38,20 +39,33 @@ const ROUNDING: f64 = 1e-10;
 const STEEP: f64 = 1.2;
 const FINEST: f64 = 1.0 / 4096.0;
 
+/// Across a jump the values differ by as much over the smaller of these shares of the largest radius as over the larger one, to
+/// this share.
+const ACROSS: [f64; 2] = [1e-6, 1e-12];
+const AS_MUCH: f64 = 0.5;
+
 /// Where a formula is no gap.
 #[derive(Debug, Clone, Copy, PartialEq, Error)]
 #[error("{}", self.words(&UnitSystem::Reduced))]
-pub struct NotFinite {
-    /// The smallest radius found where h, h' or h'' is not finite: 0 if h(0) is not.
+pub struct NoGap {
+    /// The smallest radius found where h, h' or h'' is not finite, or h jumps: 0 if h(0) is not finite.
     pub radius: f64,
     /// The largest radius asked for.
     pub largest: f64,
+    /// Whether h jumps there. Pressed over a ledge, a body would store an energy without bound.
+    pub jumps: bool,
 }
 
-impl NotFinite {
+impl NoGap {
     /// What is wrong, with the radii as `units` show them.
     pub fn words(&self, units: &UnitSystem) -> String {
         let [radius, largest] = [self.radius, self.largest].map(|r| said(units, Quantity::Length, r));
+        if self.jumps {
+            return format!(
+                "the formula jumps at r = {radius} (it must be continuous up to r = {largest}): give a ledge a width, as \
+                 tanh((r - {radius})/width) does"
+            );
+        }
         format!(
             "the formula is not finite at r = {radius} (it must be up to r = {largest}, with its slope and curvature)"
         )
@@ -59,12 +73,13 @@ impl NotFinite {
 }
 
 impl Bound {
-    /// Whether h(0) and, for 0 < r ≤ `largest`, h, h' and h'' are finite, apart from places that h and h' pass.
+    /// Whether h(0) and, for 0 < r ≤ `largest`, h, h' and h'' are finite, apart from places that h and h' pass, and h does not
+    /// jump.
     ///
     /// # Errors
-    /// The smallest radius found where they are not.
-    pub fn check(&self, largest: f64) -> Result<(), NotFinite> {
-        let error = |radius| NotFinite { radius, largest };
+    /// The smallest radius found where they are not, or it does.
+    pub fn check(&self, largest: f64) -> Result<(), NoGap> {
+        let error = |radius| NoGap { radius, largest, jumps: false };
         if !self.offset().is_finite() {
             return Err(error(0.0));
         }
@@ -72,7 +87,28 @@ impl Bound {
         let pole = narrow.iter().find_map(|&place| self.pole(place, largest)).or(blank);
         sound.retain(|[lo, _]| pole.is_none_or(|pole| *lo < pole));
         sound.sort_by(|a, b| a[0].total_cmp(&b[0]));
-        self.bends(&sound).or(pole).map_or(Ok(()), |radius| Err(error(radius)))
+        let not_finite = self.bends(&sound).or(pole);
+        let places = narrow.iter().map(|[lo, hi]| 0.5 * (lo + hi));
+        let jump = places.chain(self.ledges(largest)).filter(|&r| self.jumps(r, largest)).reduce(f64::min);
+        if let Some(radius) = jump.filter(|jump| not_finite.is_none_or(|radius| *jump < radius)) {
+            return Err(NoGap { radius, largest, jumps: true });
+        }
+        not_finite.map_or(Ok(()), |radius| Err(error(radius)))
+    }
+
+    /// Where a part of the formula jumps: the breaks, if it has such a part.
+    fn ledges(&self, largest: f64) -> Vec<f64> {
+        let jumps = |step: &FormulaStep| matches!(step, FormulaStep::Unary(Unary::Sign | Unary::Step));
+        if self.steps.steps.iter().any(jumps) { self.breaks(largest) } else { Vec::new() }
+    }
+
+    /// Whether h jumps at the radius `r`.
+    fn jumps(&self, r: f64, largest: f64) -> bool {
+        let [far, near] = ACROSS
+            .map(|share| [r - share * largest, r + share * largest].map(|r| self.whole::<1>(r.max(0.0))[0]));
+        let by = |[before, after]: [f64; 2]| (after - before).abs();
+        let size = near[0].abs() + near[1].abs() + self.offset().abs();
+        by(near) > AS_MUCH * by(far) && by(near) > ROUNDING * size
     }
 
     /// Divides the radii up to `largest`, as far as the formula may be finite, into intervals with a bound and places
@@ -276,14 +312,36 @@ mod tests {
             "r^1.001 + r^2",
             "hypot(r - 0.3, 0) + sqrt((r - 0.5)^4)",
             "sqrt(r*r - r^2)",
-            "abs(tan(r/2)) + sign(r - 1)*r",
-            "1/(2*step(r - 0.3001) - 1)",
+            "abs(tan(r/2)) + sign(r - 1)*(r - 1)",
+            "1/(2 + max(sign(r - 0.3001), -1)*(r - 0.3001))",
+            "r^2 + (r - 0.3)^2*step(r - 0.3)",
+            "r^2 + 0.01*tanh((r - 0.3)/1e-7)",
             "tan(r/2)",
             "7",
         ] {
             assert_eq!(bound(text).check(2.0), Ok(()), "{text}");
         }
         assert!(bound("sqrt(1 - r^2)").check(0.99).is_ok());
+    }
+
+    #[test]
+    fn a_formula_that_jumps_is_no_gap() {
+        for (text, radius) in [
+            ("r^2/2 + 0.01*step(r - 0.15)", 0.15),
+            ("r^2/2 - 1e-6*sign(r - 0.3001)", 0.3001),
+            ("sign(r - 1)*r", 1.0),
+            ("1/(2*step(r - 0.3001) - 1)", 0.3001),
+            ("r^2 + 0.01*atan(1/(r - 0.7))", 0.7),
+            // A narrow ledge, and one before a pole.
+            ("r^2 + 0.01*(step(r - 0.3) - step(r - 0.3 - 1e-9))", 0.3),
+            ("r^2 + 0.01*step(r - 0.3) + 1/(r - 0.4)", 0.3),
+        ] {
+            let error = bound(text).check(2.0).unwrap_err();
+            assert!(error.jumps && (error.radius - radius).abs() < 1e-6, "{text}: {error}");
+        }
+        let error = bound("r^2 + 0.01*step(r - 0.5) + 1/(r - 0.4)").check(2.0).unwrap_err();
+        assert!(!error.jumps, "{error}");
+        assert!(bound("r^2 + step(r - 3)").check(2.0).is_ok());
     }
 
     #[test]

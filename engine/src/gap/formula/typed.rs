@@ -1,7 +1,7 @@
 //! A gap as a user types it: the formula's text, its parameters, and what follows from both.
 
 use super::gap::FormulaGap;
-use super::survey::NotFinite;
+use super::survey::NoGap;
 use super::{BindError, Formula, FormulaError};
 use crate::units::UnitSystem;
 use thiserror::Error;
@@ -51,16 +51,16 @@ pub enum TypedError {
     /// More than [`MOST_PARAMETERS`].
     #[error("the formula has {0} parameters, more than {MOST_PARAMETERS}")]
     TooMany(usize),
-    /// It is not finite where it must be.
+    /// It is not finite where it must be, or jumps.
     #[error(transparent)]
-    NotFinite(#[from] NotFinite),
+    NoGap(#[from] NoGap),
 }
 
 impl TypedError {
     /// What is wrong, with lengths as `units` show them.
     pub fn words(&self, units: &UnitSystem) -> String {
         match self {
-            Self::NotFinite(cause) => cause.words(units),
+            Self::NoGap(cause) => cause.words(units),
             other => other.to_string(),
         }
     }
