@@ -97,6 +97,8 @@ pub struct RunReport {
     pub rate: Option<f64>,
     /// The first moment.
     pub start: MomentReport,
+    /// Where the bodies would overlap outside the disc at the start, which then cannot exist alone; null where they do not.
+    pub overlaps_at: Option<f64>,
     /// When the edge first opens; null where it never does.
     pub pinned_until: Option<MomentReport>,
     /// The least force on the way.
@@ -244,6 +246,7 @@ impl Factors {
         RunReport {
             rate,
             start: self.moment(&pull.start),
+            overlaps_at: None,
             pinned_until: pull.pinned_until.as_ref().map(|moment| self.moment(moment)),
             peak: self.moment(&pull.peak),
             tension_peaks: pull.tension_peaks.iter().map(|moment| self.moment(moment)).collect(),
@@ -322,6 +325,8 @@ impl PullReport {
                 parts.iter().map(|part| part.in_units(1.0 / factors.control, 1.0 / factors.time())).collect();
             let part = progress::ProgressPart::new(progress, [k as f64 / count, (k + 1) as f64 / count]);
             let pull = puller.pull(&parts, &part).map_err(refused)?;
+            let overlaps_at = overlap_at_start(&case, &pull, progress).map(|r| r * factors.length);
+            warnings.extend(overlaps_at.map(|r| warning_of_start(&case, pull.start.contact_radius, r)));
             warnings.extend(limits(preset, &case, &factors, rate.as_ref(), &pull, progress));
             if parts[pull.begun..].iter().any(|part| !matches!(part, Part::Apart { .. })) {
                 warnings.push(format!(
@@ -330,7 +335,7 @@ impl PullReport {
                     parts.len()
                 ));
             }
-            runs.push(factors.run(*rate, &pull, case.control));
+            runs.push(RunReport { overlaps_at, ..factors.run(*rate, &pull, case.control) });
         }
         let mut failures = Vec::new();
         if !asked.loads.is_empty() {
@@ -624,4 +629,20 @@ fn limits(
         }
     }
     warnings
+}
+
+/// Where the bodies would overlap outside the disc from which a pull starts. An edge that opens takes them apart.
+fn overlap_at_start(case: &Case, pull: &Pull, progress: &dyn Progress) -> Option<f64> {
+    let Moment { contact_radius, approach, .. } = pull.start;
+    let judge = Judge::new(&case.reduced, &case.table);
+    Some(judge.verdict(contact_radius, approach, progress).overlapping()?.radius)
+}
+
+fn warning_of_start(case: &Case, s: f64, overlap: f64) -> String {
+    format!(
+        "the disc of radius {} from which the pull starts cannot exist alone: outside it the bodies would overlap at \
+         r = {}; a pull follows only one disc, so its numbers do not hold",
+        shown(&case.shown, Quantity::Length, s * case.units().length),
+        shown(&case.shown, Quantity::Length, overlap)
+    )
 }

@@ -75,6 +75,12 @@ impl Fault {
         }
     }
 
+    /// A pull that starts from a disc that cannot exist.
+    #[must_use]
+    pub fn overlapping_start() -> Self {
+        Self::new(REASONS[11], "the bodies would overlap outside the disc from which the pull starts")
+    }
+
     /// A measured curve that cannot be fitted.
     #[must_use]
     pub fn of_fit(error: &FitError) -> Self {

@@ -178,7 +178,9 @@ impl Workings<'_> {
             let asked = AskedPulls::default();
             let report =
                 PullReport::compute(self.preset, &asked, self.progress).map_err(|e| Fault::of_pull(&e))?;
-            report.runs.into_iter().next().ok_or_else(|| Fault::incomplete("no pull"))
+            let run = report.runs.into_iter().next().ok_or_else(|| Fault::incomplete("no pull"))?;
+            let is_asked_for = self.preset.path.contact == ContactKind::OneDisc;
+            if run.overlaps_at.is_some() && !is_asked_for { Err(Fault::overlapping_start()) } else { Ok(run) }
         })
     }
 

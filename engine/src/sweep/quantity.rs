@@ -163,7 +163,7 @@ quantities! {
     "fitted_offset" "δ₀" Length "offset of x" fitted "data.offset";
     "fitted_baseline" "P₀" Force "baseline of the force" fitted "data.baseline";
     "fitted_tilt" "" ForcePerLength "tilt of the baseline" fitted "data.tilt";
-    "fit_chi_squared" "" Number "chi squared per point of the fit": Stage::Fit(|fit| Some(fit.chi_squared()));
+    "fit_chi_squared" "" Number "chi squared per degree of freedom of the fit": Stage::Fit(|fit| Some(fit.chi_squared()));
     "fit_outliers" "" Count "points far from the fitted curve": Stage::Fit(|fit| Some(fit.outliers()));
     "fit_verdict" "" Count "0 where the model describes the points, 4 where it does not; then no value can be \
                              trusted":
