@@ -503,7 +503,7 @@ class Fit(_Fitted):
     def _title(self) -> str:
         said = self._said()
         fitted = sum(said["rows"][branch][part] for branch in ("approach", "retraction") for part in ("contact", "free"))
-        return f"{fitted} points, chi squared per point {said['chi_squared']:.4g}, {said['verdict']}"
+        return f"{fitted} points, chi squared per degree of freedom {said['chi_squared']:.4g}, {said['verdict']}"
 
 
 def _columns_of(text: str) -> Dict[str, Any]:

@@ -130,8 +130,6 @@ pub(super) struct White {
     pub(super) condition: f64,
     /// (JᵀJ)⁻¹; `None` where the condition is too large.
     pub(super) inner: Option<DMatrix<f64>>,
-    /// How many directions it determines.
-    pub(super) rank: usize,
     /// The direction about which it says least.
     pub(super) weakest: Vec<f64>,
 }
@@ -157,7 +155,6 @@ impl White {
         let given = (of_known * v.row(weakest).transpose()).norm_squared() > HALF * least * least;
         let most = if given { LARGEST_WITH_GIVEN } else { LARGEST_CONDITION };
         let refused = condition.is_nan() || condition > most || lengths.contains(&0.0);
-        let rank = values.iter().filter(|value| **value * LARGEST_CONDITION >= values.max()).count();
         let inner = (!refused).then(|| {
             DMatrix::from_fn(p, p, |i, j| {
                 let sum: f64 = (0..p).map(|k| v[(k, i)] * v[(k, j)] / values[k].powi(2)).sum();
@@ -166,7 +163,7 @@ impl White {
         });
         let weakest =
             (0..p).map(|j| if lengths[j] > 0.0 { v[(weakest, j)] / lengths[j] } else { 1.0 }).collect();
-        Some(Self { condition, inner, rank, weakest })
+        Some(Self { condition, inner, weakest })
     }
 }
 

@@ -67,7 +67,7 @@ fn of_reading(
     let outcome = match &found {
         _ if is_described => "As that, the model describes it".to_owned(),
         Some(found) => format!(
-            "As that, the model does not describe it either: chi squared per point is {} instead of {}",
+            "As that, the model does not describe it either: chi squared per degree of freedom is {} instead of {}",
             chi(found),
             chi(own)
         ),

@@ -156,7 +156,9 @@ pub fn target(preset: &Preset, abscissa: Abscissa, name: &str) -> Result<Target,
     let refused = |why: String| FitError::Key { key: quote(name), why };
     match name {
         OFFSET | "offset" if abscissa == Abscissa::Radius => {
-            return Err(refused("a contact radius has no offset".to_owned()));
+            return Err(refused(format!(
+                "a contact radius has no offset; leave {OFFSET} out of the free keys"
+            )));
         }
         OFFSET | "offset" => return Ok(Target::Offset),
         BASELINE | "baseline" => return Ok(Target::Baseline),

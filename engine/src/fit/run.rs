@@ -400,7 +400,12 @@ fn of_no_free_part(problem: &FitProblem, branches: &Branches) -> Option<String> 
     } else {
         ""
     };
-    Some(format!("there is no free part: {held}sigma of the force is taken from neighbouring rows{unless}"))
+    let taken = match branches.noise.from[1] {
+        Origin::Given => "as given",
+        Origin::Assumed => "assumed to be small, as neighbouring rows show none",
+        Origin::Apart | Origin::Neighbours => "taken from neighbouring rows",
+    };
+    Some(format!("there is no free part: {held}sigma of the force is {taken}{unless}"))
 }
 
 /// What a fit comes to.
@@ -450,7 +455,8 @@ fn growth(problem: &FitProblem, u: &[f64], what: &Determined, verdict: Verdict) 
 fn noise_of(problem: &FitProblem, branches: &Branches) -> Noise {
     let Noise { sigma: [before, ..], mut from, .. } = branches.noise;
     let [way, ..] = problem.sigma;
-    if branches.abscissa != Abscissa::Radius && way.total_cmp(&before).is_ne() {
+    let is_found = branches.abscissa != Abscissa::Radius || from[0] == Origin::Assumed;
+    if is_found && way.total_cmp(&before).is_ne() {
         from[0] = Origin::Neighbours;
     }
     Noise { sigma: problem.sigma, share: problem.share, from, ..branches.noise }

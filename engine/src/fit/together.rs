@@ -7,7 +7,7 @@
 //!
 //! with `C_i` the cost of the rows of curve i under one law and `C_i⁰` under its own, τ the rows that count as one, κ
 //! the noise of its residuals about its own law, by what they count, and p⁰ the number of values that a curve
-//! determines alone. Runs that do not collapse on one law have a D that chance hardly gives: F is beyond its quantile.
+//! can adapt alone. Runs that do not collapse on one law have a D that chance hardly gives: F is beyond its quantile.
 //! The covariance is that of `determined`, with its sums taken over all curves.
 
 use super::chance::beyond_f;
@@ -473,6 +473,14 @@ impl JointUncertainty {
     }
 }
 
+/// How many directions of the values take a degree of freedom each from χ², where the residuals scatter by `noise`: a direction
+/// that is known too poorly for an error takes one too, as long as the values in it have room to adapt.
+fn lowering(jacobian: &DMatrix<f64>, noise: f64) -> usize {
+    /// Logarithms of values have room for a few units: a change by 1 shows by this many σ.
+    const SHOWS: f64 = 0.2;
+    jacobian.singular_values().iter().filter(|value| **value > SHOWS * noise).count()
+}
+
 /// Whether the curves follow one law, under which they are `together`.
 fn collapse(joint: &Joint, together: &[SolvedFit], scatters: &[Scatter]) -> Collapse {
     let (mut sum, mut rows, mut own) = (0.0, 0.0, 0);
@@ -482,7 +490,7 @@ fn collapse(joint: &Joint, together: &[SolvedFit], scatters: &[Scatter]) -> Coll
         let as_one = scatter.correlation.rows();
         sum += 2.0 * (one - other) / (as_one * noise(problem, alone, joint.robust).powi(2));
         rows += problem.real(&alone.minimum.at.residuals).len() as f64 / as_one;
-        own += White::of(alone.minimum.at.jacobian.clone(), 0).map_or(0, |white| white.rank);
+        own += lowering(&alone.minimum.at.jacobian, noise(problem, alone, joint.robust) * as_one.sqrt());
     }
     let chi_squared = sum.max(0.0);
     let values = own.saturating_sub(joint.count);

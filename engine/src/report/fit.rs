@@ -546,7 +546,7 @@ impl FitReport {
         let (chi, fitted) = (short(self.chi_squared, 4), self.rows.fitted());
         let _ = writeln!(
             text,
-            "chi squared per point {chi}; {fitted} points, {}",
+            "chi squared per degree of freedom {chi}; {fitted} points, {}",
             counted(self.outliers, "outlier")
         );
         let sigma = |quantity, axis: usize| {
