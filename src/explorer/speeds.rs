@@ -7,6 +7,7 @@ use super::view::View;
 use pulloff_engine::preset::Preset;
 use pulloff_engine::progress::Progress;
 use pulloff_engine::report::SpeedsReport;
+use pulloff_engine::report::speeds::UNTIMED;
 
 /// The rows of the measured curve of a preset, or why there are none.
 #[derive(Debug, Clone)]
@@ -58,5 +59,5 @@ pub fn untimed(preset: &Preset) -> Option<String> {
     };
     let mut rows = branches.list.iter().flat_map(|branch| &branch.attached);
     let is_timed = rows.any(|row| row.time.is_finite());
-    (!is_timed).then(|| "the measured curve has no times, so no row has a speed".to_owned())
+    (!is_timed).then(|| UNTIMED.to_owned())
 }

@@ -168,13 +168,23 @@ pub enum BranchError {
     NoSegment(&'static str),
 }
 
-/// Leaves out times that start again within a branch.
-fn without_restarts(part: &mut [MeasuredPoint]) {
-    if part.windows(2).any(|pair| pair[1].time < pair[0].time) {
-        for point in part {
-            point.time = f64::NAN;
+/// Leaves out times that go back within a branch, and returns the row at which they do. Steps back by no more than rounding are
+/// none.
+fn without_restarts(part: &mut [MeasuredPoint]) -> Option<usize> {
+    /// The rounding of the times, as a share of their range.
+    const ROUNDING: f64 = 1e-9;
+    let rounding = ROUNDING * range(part.iter().map(|point| point.time));
+    for i in 1..part.len() {
+        let before = part[i - 1].time;
+        if part[i].time < before && part[i].time >= before - rounding {
+            part[i].time = before;
         }
     }
+    let back = part.windows(2).find(|pair| pair[1].time < pair[0].time)?[1].row;
+    for point in part {
+        point.time = f64::NAN;
+    }
+    Some(back)
 }
 
 /// Leaves out rows in contact without a contact radius where others have one.
@@ -269,8 +279,11 @@ impl Points {
         // Contact radii, which are zero while apart, are never turned.
         let ordered = asked.sigma[0].is_some() || of_radius;
         let mut parts = self.parts(points, ordered, notes)?;
-        for (_, part) in &mut parts {
-            without_restarts(part);
+        for (segment, part) in &mut parts {
+            let back = without_restarts(part).filter(|_| *segment != Segment::Other);
+            notes.extend(back.map(|row| {
+                format!("the times of the {} go back at row {row} and are not used", segment.name())
+            }));
         }
         let (rows, pauses) = self.counted(&parts);
         parts.retain(|(segment, _)| *segment != Segment::Other);

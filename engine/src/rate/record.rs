@@ -89,7 +89,13 @@ impl Record {
         }
         self.force_rate = force_rate;
         self.risen(moment.force);
-        self.moments.push(moment);
+        self.keep(moment);
+    }
+
+    /// Keeps a moment. Time never goes back, even where a step is shorter than the rounding of the time.
+    fn keep(&mut self, moment: Moment) {
+        let before = self.moments.last().map_or(f64::NEG_INFINITY, |last| last.time);
+        self.moments.push(Moment { time: moment.time.max(before), ..moment });
     }
 
     fn risen(&mut self, force: f64) {
@@ -132,7 +138,7 @@ impl Record {
             before = (NODES[i], node.force_rate);
             self.force_rate = node.force_rate;
             self.risen(node.held.force);
-            self.moments.push(self.moment(node, self.dissipated + lost[i]));
+            self.keep(self.moment(node, self.dissipated + lost[i]));
         }
         self.dissipated += lost[STAGES - 1];
         self.work += done[STAGES - 1];

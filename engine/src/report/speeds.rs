@@ -60,6 +60,9 @@ pub enum SpeedsError {
     Nothing,
 }
 
+/// Said where no row has a speed.
+pub const UNTIMED: &str = "no row has a time that can be used, so none has a speed";
+
 /// The columns as CSV; they never change, new ones come after them.
 pub const COLUMNS: &[&str] = columns!(
     time contact_radius speed energy_release_rate error speed_error window segment row
@@ -146,7 +149,7 @@ impl SpeedsReport {
         warnings.extend(doubt_of_baseline(&reading, preset, &branches));
         warnings.extend(doubts_of_rows(of_file.len() - rows.len() - hidden, ambiguous, hidden, contrary));
         if rows.iter().all(|row| row.speed.is_none()) {
-            notes.push("no column gives the times, so no row has a speed".to_owned());
+            notes.push(UNTIMED.to_owned());
         }
         let of_radius = if branches.abscissa == Abscissa::Radius { None } else { Some(sigma_x) };
         Ok(Self {
@@ -328,7 +331,7 @@ mod tests {
             assert!((row.energy_release_rate / energy - 1.0).abs() < 1e-6, "{row:?} {energy}");
             assert!(row.speed.is_none() && row.time.is_none());
         }
-        assert!(found.notes.iter().any(|note| note.contains("no column gives the times")));
+        assert!(found.notes.iter().any(|note| note.contains(UNTIMED)));
     }
 
     /// g falls with s for a while, so two discs have the force and the approach of a row; h = r² − b r⁴ + c r⁶ has
