@@ -20,8 +20,8 @@ use crate::quasistatic::admissible::{Judge, falls};
 use crate::quasistatic::beyond::{is_smaller_beyond, is_smaller_beyond_zone, is_smaller_within};
 use crate::quasistatic::monotone::weighted;
 use crate::quasistatic::path::{
-    Losses, Path, PathError, PathSetting, PathState, PathStop, ZoneStartError, Zones, cycle, cycle_in_zone,
-    start_in_zone, unload, unload_in_zone,
+    Direction, Losses, Path, PathError, PathSetting, PathState, PathStop, ZoneStartError, Zones, cycle,
+    cycle_in_zone, start_in_zone, unload, unload_in_zone,
 };
 use crate::quasistatic::start::{StartError, contact_radius, end_contact_radius};
 use crate::quasistatic::{Curve, CurveStop, Detail};
@@ -464,8 +464,10 @@ impl Case {
 
     /// A warning, if an unloading starts where larger contacts pull more than all on its way.
     pub fn warning_of_start(&self, path: &Path) -> Option<String> {
-        // A path from the first touch has no start that could be elsewhere.
-        let start = path.start().filter(|start| start.rings() == 0 && start.contact_radius > 0.0)?;
+        // A path from the first touch has no start that could be elsewhere, even if it stops before it turns.
+        let opens = |start: &&PathState| start.direction == Direction::Unloading;
+        let start =
+            path.start().filter(|start| start.rings() == 0 && start.contact_radius > 0.0).filter(opens)?;
         let start = start.contact_radius;
         if !self.is_cut_off(path, Control::Force) {
             return None;

@@ -83,12 +83,18 @@ impl ProblemArguments {
             None => store.resolve(crate::store::shipped::DEFAULT)?,
         };
         let Changes { assignments, control } = &self.changes;
-        let mut loaded = store.load(&source, assignments)?;
+        // A rate is read under the control that is given with it.
+        let loaded = match (store.load(&source, &self.changes.all()), control) {
+            (Ok(loaded), _) => loaded,
+            (Err(error), None) => return Err(error.into()),
+            (Err(_), Some(control)) => {
+                let mut loaded = store.load(&source, assignments)?;
+                let assigned = loaded.preset.assign(CONTROL, control);
+                assigned.map_err(|invalid| Failure::Usage(format!("--control: {invalid}")))?;
+                loaded
+            }
+        };
         assigned::report(console, &store, &source, assignments, &loaded.preset);
-        if let Some(control) = control {
-            let assigned = loaded.preset.assign(CONTROL, control);
-            assigned.map_err(|invalid| Failure::Usage(format!("--control: {invalid}")))?;
-        }
         Ok(loaded)
     }
 

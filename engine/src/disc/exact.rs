@@ -241,8 +241,9 @@ impl Basis for ExactBasis {
         let digits = self.trusted_digits(problem, s);
         if digits < DIGITS_WANTED {
             cautions.push(format!(
-                "the gap is tabulated to only {digits:.1} digits: at a few radii the table does not reproduce the \
-                 gap itself"
+                "the gap is tabulated to only {:.1} digits: at a few radii the table does not reproduce the \
+                 gap itself",
+                digits.max(0.0)
             ));
         }
         cautions
