@@ -11,9 +11,8 @@ use super::{data, script, study_table, walk_table};
 use crate::mend::WordedFault;
 use crate::print::PictureFormat;
 use crate::store::{Listed, Overwrite, Source, Store, StoreError, WriteError, write_atomically};
+use pulloff_engine::preset::Preset;
 use pulloff_engine::preset::changes::{changes, differences};
-use pulloff_engine::preset::schema::NONE;
-use pulloff_engine::preset::{Invalid, Preset, Value, data as data_keys};
 use pulloff_engine::progress::Unwatched;
 use pulloff_engine::report::columns;
 use pulloff_engine::report::path::{EventReport, events_table};
@@ -22,18 +21,6 @@ use pulloff_engine::report::{Head, TraceReport, json, rows};
 use pulloff_engine::text::show_path;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
-
-/// Gives `preset` other values; a measured curve comes last, together with the values that describe its columns. One that
-/// is taken away, or replaced, no longer refuses what it states otherwise.
-fn assign(preset: &mut Preset, assignments: &[Assignment]) -> Result<(), Invalid> {
-    if assignments.iter().any(|(key, _)| key == data_keys::FILE) {
-        preset.assign(data_keys::FILE, NONE)?;
-    }
-    let is_curve = |assignment: &&Assignment| [data_keys::FILE, data_keys::COLUMNS].contains(&&*assignment.0);
-    let (curve, others): (Vec<_>, Vec<_>) = assignments.iter().partition(is_curve);
-    preset.assign_all(&others.into_iter().cloned().collect::<Vec<_>>())?;
-    preset.set_all(curve.into_iter().map(|(key, text)| (&**key, Value::Text(text.clone()))))
-}
 
 /// Does a job.
 pub fn run(store: &Store, job: Job) -> Done {
@@ -44,7 +31,7 @@ pub fn run(store: &Store, job: Job) -> Done {
             Done::Named(store.list().presets.into_iter().map(named).collect())
         }
         Job::Assign { mut preset, assignments } => {
-            match assign(&mut preset, &assignments) {
+            match preset.assign_all(&assignments) {
                 Ok(()) => {
                     // Found here, its branches need not be found later where nobody may wait for them.
                     let _ = preset.branches();

@@ -32,6 +32,8 @@ pub const FREE: &str = "data.free";
 pub const UNCERTAIN: &str = "data.uncertain";
 /// The key that says whether the file or the preset counts for the instrument.
 pub const SETTINGS: &str = "data.settings";
+/// The keys of what holds for one file only: how it is read, and where its zeros are. Another file drops them.
+pub const OF_FILE: [&str; 8] = [COLUMNS, SEGMENT, FREE_PART, SIGNS, SKIP, OFFSET, BASELINE, TILT];
 /// The words of [`SETTINGS`].
 pub const SETTINGS_OF: [&str; 2] = ["file", "preset"];
 /// The words of [`SEGMENT`].

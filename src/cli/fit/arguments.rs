@@ -77,7 +77,7 @@ pub struct FitArguments {
     #[arg(long)]
     pub(super) profile: bool,
     /// Fit this many resampled sets, drawn at random by blocks of rows, 10 to 100000; when left out, 200 below 40
-    /// degrees of freedom and none otherwise
+    /// degrees of freedom, 100 where the curve runs through snaps, and none otherwise
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(10..=100_000))]
     pub(super) bootstrap: Option<u32>,
     /// The seed of the bootstrap's random numbers
@@ -222,9 +222,9 @@ impl FitArguments {
     }
 
     /// What the command line says about the files, with the keys.
-    pub(super) fn said(&self) -> Result<Vec<(&'static str, Value)>, Failure> {
+    pub(super) fn said(&self, preset: &Preset) -> Result<Vec<(&'static str, Value)>, Failure> {
         let uncertain = self.uncertain.as_ref().map(|given| (data::UNCERTAIN, Value::Text(given.join(","))));
-        Ok(self.reading.said()?.into_iter().chain(uncertain).collect())
+        Ok(self.reading.said(&self.changes, preset)?.into_iter().chain(uncertain).collect())
     }
 
     /// Checks all outputs. An output ending in .toml is the preset with the fitted values; the report then goes to
