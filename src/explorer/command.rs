@@ -105,7 +105,7 @@ pub enum Command {
         line: Option<usize>,
     },
     /// Go to the state with this contact radius, in the user's units.
-    MoveTo(f64),
+    MoveTo(String),
     /// Zoom towards a place of a view, or away from it.
     Zoom {
         view: View,

@@ -2,6 +2,8 @@
 
 use super::node::{Node, NodeKind};
 use super::prune;
+use super::setting::Setting;
+use pulloff_engine::units::UnitSystem;
 use std::sync::Arc;
 
 /// Nodes per chunk. A snapshot of the tree shares all chunks but the last with the tree itself.
@@ -136,6 +138,31 @@ impl History {
         let id = self.next_id;
         self.next_id += 1;
         self.add(TreeNode { node, id });
+    }
+
+    /// Shows the numbers of all nodes in `units`, where both are SI: how numbers are shown is no part of a problem.
+    pub fn show_in(&mut self, units: &UnitSystem) {
+        let is_other = |own: &UnitSystem| own != units && *own != UnitSystem::Reduced;
+        if *units == UnitSystem::Reduced {
+            return;
+        }
+        // Nodes share their settings.
+        let mut last: Option<[Arc<Setting>; 2]> = None;
+        for chunk in &mut self.chunks {
+            if !chunk.iter().any(|node| is_other(&node.node.setting.preset.units)) {
+                continue;
+            }
+            for TreeNode { node, .. } in Arc::make_mut(chunk) {
+                if !is_other(&node.setting.preset.units) {
+                    continue;
+                }
+                let known = last.as_ref().filter(|[own, _]| Arc::ptr_eq(own, &node.setting));
+                let shown = known
+                    .map_or_else(|| Arc::new(node.setting.shown_in(units)), |[_, shown]| Arc::clone(shown));
+                last = Some([std::mem::replace(&mut node.setting, Arc::clone(&shown)), shown]);
+                self.revision += 1;
+            }
+        }
     }
 
     /// Appends a node after the current one and moves to it.

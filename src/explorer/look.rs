@@ -8,6 +8,7 @@ use super::model::{Level, Model};
 use super::pins::letter;
 use super::reach::{pick_walk_line, walk_line};
 use super::script::key_called;
+use super::update::values::tell_bare_range;
 use super::view::{Axes, Overlay, ScreenPanel, View, Window};
 use pulloff_engine::preset::Key;
 use pulloff_engine::problem::Begin;
@@ -71,7 +72,10 @@ pub(super) fn map_of(model: &mut Model, x: &Key, y: Option<&Key>) {
             model.tell(Level::Error, "the two axes of a map must be different keys");
         }
         Ok(axes) => match axes.ranges(&model.preset) {
-            Ok(_) => show_map(model, axes),
+            Ok(_) => {
+                [&axes.x, &axes.y].into_iter().for_each(|axis| tell_bare_range(model, axis));
+                show_map(model, axes);
+            }
             Err(why) => model.tell(Level::Error, why),
         },
     }

@@ -321,7 +321,8 @@ impl Model {
             let [ours, its] = [&self.preset, &curve.setting.preset].map(|preset| &preset.path);
             let same_way = ours.begin == its.begin && (curve.along.is_none() || ours.turn == its.turn);
             let same_device = (ours.control, ours.contact) == (its.control, its.contact);
-            curve.base.is_of(&self.preset) && same_device && same_way
+            let same_units = self.preset.units == curve.setting.preset.units;
+            curve.base.is_of(&self.preset) && same_device && same_way && same_units
         })
     }
 

@@ -77,6 +77,9 @@ pub(super) fn change(model: &mut Model, preset: Preset) -> Vec<Effect> {
         let rate = labelled(&row, &value, &model.preset.units);
         model.tell(Level::Info, format!("{rate} is dropped: it is no rate under the new control"));
     }
+    if preset.units != model.preset.units {
+        model.history.show_in(&preset.units);
+    }
     model.preset = preset;
     if same_problem {
         return Vec::new();

@@ -3,6 +3,7 @@
 use pulloff_engine::preset::{BasisSpec, Preset};
 use pulloff_engine::problem::{Begin, Control, Reduced, Units};
 use pulloff_engine::quasistatic::Scales;
+use pulloff_engine::units::UnitSystem;
 
 /// The problem a node was solved in: the parameters may change from node to node.
 ///
@@ -25,6 +26,13 @@ impl Setting {
         let reduced = preset.reduced();
         let control = preset.path.control.in_units(reduced.units.stiffness);
         Self { preset, reduced, control, scales }
+    }
+
+    /// The same problem with its numbers shown in `units`.
+    pub fn shown_in(&self, units: &UnitSystem) -> Self {
+        let mut preset = self.preset.clone();
+        preset.units = units.clone();
+        Self { preset, ..self.clone() }
     }
 
     /// The factors to the user's units.

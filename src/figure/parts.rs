@@ -79,9 +79,9 @@ pub enum Sign {
     /// The event that ends a path, by its number: the bodies come apart. 0 where the numbers on the screen are those of
     /// another path.
     LastContact(usize),
-    /// A of the paper: where the bodies pull off under a dead load.
+    /// The least force of the path: A of the paper, where the bodies pull off under a dead load.
     LargestPull,
-    /// B of the paper: where the bodies pull off under fixed grips.
+    /// The least approach of the path: B of the paper, where the bodies pull off under fixed grips.
     Farthest,
     Landing,
     /// A crest touches.

@@ -13,7 +13,7 @@ pub enum NameError {
     /// It contains other characters, or too many.
     #[error(
         "\"{name}\" is not a preset name: use a-z, 0-9, - and _, first a letter or digit, at most {LONGEST} \
-         characters (a file's path has a / or ends in .toml)"
+         characters (a path, which has a / or ends in .toml, is only read)"
     )]
     Malformed { name: String },
     /// It is the name of a command.

@@ -224,11 +224,12 @@ impl Theme {
         if line.chars().count() <= room {
             return line.to_owned();
         }
-        let kept: String = line.chars().take(room.saturating_sub(1)).collect();
+        let rest = self.glyph("…", "...");
+        let kept: String = line.chars().take(room.saturating_sub(rest.chars().count())).collect();
         // A word that was cut in the middle is removed.
         let is_whole = line.chars().nth(kept.chars().count()).is_none_or(char::is_whitespace);
         let end = if is_whole { kept.len() } else { kept.rfind(' ').unwrap_or(0) };
-        format!("{}{}", kept[..end].trim_end(), self.glyph("…", "."))
+        format!("{}{rest}", kept[..end].trim_end())
     }
 
     /// A label of the parameter table with its Greek letters, or in ASCII with their usual substitutes.
@@ -302,7 +303,9 @@ fn transliterate(c: char) -> &'static str {
         '′' => "'",
         '→' | '▸' => ">",
         '←' => "<",
-        '·' | '…' | '┈' => ".",
+        '³' => "^3",
+        '⁴' => "^4",
+        '·' | '┈' => ".",
         '×' => "X",
         '±' => "+-",
         'χ' => "chi",

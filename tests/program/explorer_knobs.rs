@@ -202,9 +202,9 @@ fn nothing_is_walked_on_a_curve_of_other_values() {
 fn the_walker_is_not_sent_further_than_a_walk_may_lead() {
     let mut session = Session::new("wavy-sphere");
     let start = session.radius();
-    session.does(Command::MoveTo(2.9 * start));
+    session.does(Command::MoveTo(format!("{:?}", 2.9 * start)));
     assert!((session.radius() / (2.9 * start) - 1.0).abs() < 1e-9);
-    session.does(Command::MoveTo(3.1 * start));
+    session.does(Command::MoveTo(format!("{:?}", 3.1 * start)));
     assert!((session.radius() / (2.9 * start) - 1.0).abs() < 1e-9);
     assert!(
         session.status().contains("1.271 is out of range: it must be at most 1.23"),

@@ -27,7 +27,7 @@ fn any_command(rng: &mut Rng) -> Command {
     let set = |key: &'static str, text: String| Command::Set { key: key.into(), text };
     match rng.u8(..37) {
         34 => Id::MoveTo.into(),
-        35 => Command::MoveTo(0.1 + 0.4 * rng.f64()),
+        35 => Command::MoveTo(format!("{:?}", 0.1 + 0.4 * rng.f64())),
         36 => set("material.closing_work_of_adhesion", ["0.002", "none"][rng.usize(..2)].to_owned()),
         32 => set("path.begin", ["apart", "disc"][rng.usize(..2)].to_owned()),
         33 => Command::Assign(vec![

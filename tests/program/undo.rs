@@ -64,7 +64,7 @@ fn any_command(rng: &mut Rng) -> Command {
         ]),
         27 => [Id::Pin, Id::Pin, Id::Rings][rng.usize(..3)].into(),
         28 => Command::Unpin(Some(rng.usize(1..3))),
-        26 => Command::MoveTo(0.2 + 0.2 * rng.f64()),
+        26 => Command::MoveTo(format!("{:?}", 0.2 + 0.2 * rng.f64())),
         _ => Command::OpenWith {
             name: ["wavy-sphere", "fig-3-jkr"][rng.usize(..2)].to_owned(),
             assignments: vec![("path.end_contact_radius".into(), "0.12".to_owned())],

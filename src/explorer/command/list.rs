@@ -29,7 +29,7 @@ macro_rules! each_command {
         MoveTo "move-to" "L" "to A" curve Curve Yes
             "move to A, the largest pull of the path, where a dead load lets go; or to a contact radius, or to an event by number, as a digit does"
             { words: "largest pull peak", run: to_largest_pull,
-            takes: takes("A, event N, or a contact radius", destination).offering(|_| words(["A", "event"])) }
+            takes: takes("A, B, event N, or a contact radius", destination).offering(|_| words(["A", "B", "event"])) }
         Reverse "reverse" "b" "back" turns InOrder Yes "turn round: steps and events then go the other way"
             { words: "turn direction", look: |model| model.inward = !model.inward }
         Halve "halve-step" "[" "half step" always InOrder Yes "halve the step length" { look: |model| scale_length(model, 0.5) }

@@ -13,6 +13,7 @@ use pulloff_engine::preset::schema::Kind;
 use pulloff_engine::preset::{Key, PARAMETERS};
 use pulloff_engine::sweep::QuantityColumn;
 use pulloff_engine::text::{closest, quote};
+use pulloff_engine::units::parse_quantity;
 
 /// What a command takes.
 #[derive(Debug, Clone, Copy)]
@@ -211,9 +212,12 @@ pub(in crate::explorer) fn destination(rest: &mut Rest<'_>) -> Result<Command, S
     if rest.takes("event") {
         return Ok(Command::SelectEvent(rest.count("the number of an event", MOST_STEPS)?));
     }
-    let allowed = "a contact radius: a positive number in the preset's units";
-    let is_radius = |radius: &f64| radius.is_finite() && *radius > 0.0;
-    Ok(Command::MoveTo(number(rest.need("a contact radius")?, allowed, is_radius)?))
+    let word = rest.need("a contact radius")?;
+    let is_radius = word.text == "B" || parse_quantity(&word.text).is_ok_and(|radius| radius.number > 0.0);
+    is_radius.then(|| Command::MoveTo(word.text.clone())).ok_or_else(|| {
+        let allowed = "a contact radius: a positive number, which may have a unit in an SI preset";
+        ScriptFault::new(word.column, format!("\"{}\" is not {allowed}", quote(&word.text)))
+    })
 }
 
 pub(in crate::explorer) fn assigned(rest: &mut Rest<'_>) -> Result<Command, ScriptFault> {

@@ -14,7 +14,8 @@ pub fn line(command: &Command) -> Option<String> {
             format!(" {count}")
         }
         Command::SelectEvent(number) => format!(" event {number}"),
-        Command::StepLength(length) | Command::MoveTo(length) => format!(" {length:?}"),
+        Command::StepLength(length) => format!(" {length:?}"),
+        Command::MoveTo(radius) => format!(" {}", quoted(radius)?),
         Command::Assign(all) => assignments(all)?,
         Command::Map { x, y } => {
             let y = y.as_ref().map_or(Some(String::new()), |y| Some(format!(" {}", quoted(y)?)))?;

@@ -32,7 +32,7 @@ fn any_command() -> impl Strategy<Value = Command> {
         (1..=MOST_STEPS).prop_map(Command::RunOf),
         (1..=MOST_STEPS).prop_map(Command::SelectEvent),
         (1e-4..0.2f64).prop_map(Command::StepLength),
-        (1e-9..1e3f64).prop_map(Command::MoveTo),
+        (1e-9..1e3f64).prop_map(|radius| Command::MoveTo(format!("{radius:?}"))),
         assignments(1).prop_map(Command::Assign),
         overlay.prop_map(Command::Overlay),
         Just(Command::Map { x: "gap.amplitude".into(), y: None }),

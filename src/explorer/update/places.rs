@@ -8,17 +8,30 @@ use crate::explorer::model::{Level, Model};
 use crate::explorer::walk::{Action, ROOM};
 use pulloff_engine::annuli::Contacts;
 use pulloff_engine::case::Case;
+use pulloff_engine::preset::schema::START_KEYS;
 use pulloff_engine::problem::Begin;
 use pulloff_engine::quasistatic::walk::{At, Passing};
+use pulloff_engine::quasistatic::{Path, PathState};
 use pulloff_engine::report::number::{short, with_unit};
-use pulloff_engine::report::path::{EventReport, StateReport};
+use pulloff_engine::report::path::{EventReport, StateReport, TotalsReport};
 use pulloff_engine::units::Quantity;
+
+/// The letter of the farthest state on the charts.
+const B: &str = "B";
 
 /// Radii of one limit point that were found in two ways agree to this accuracy.
 const SAME: f64 = 1e-6;
 
-/// The walker goes to the state with this contact radius, in the user's units.
-pub(super) fn move_to(model: &mut Model, radius: f64) -> Vec<Effect> {
+/// The walker goes to the state with this contact radius, as typed: a bare number is in the preset's base units.
+pub(super) fn move_to(model: &mut Model, text: String) -> Vec<Effect> {
+    if text == B {
+        return to_marked(model, FARTHEST, Command::MoveTo(text));
+    }
+    let Some(row) = model.preset.row(START_KEYS[0]) else { return Vec::new() };
+    let radius = match model.preset.number(&row, &text) {
+        Ok(radius) => radius,
+        Err(invalid) => return model.refuse(invalid.to_string().replace(&*row.key, "contact radius")),
+    };
     let Some(curve) = &model.curve else { return Vec::new() };
     let reduced = radius / curve.case.units().length;
     if reduced > ROOM * curve.case.start {
@@ -32,11 +45,29 @@ pub(super) fn move_to(model: &mut Model, radius: f64) -> Vec<Effect> {
     if curve.along.is_some() {
         model.tell(Level::Info, "the walk follows the path: this is its nearest state");
     }
-    walk(model, Action::MoveTo { radius: reduced, command: Command::MoveTo(radius) })
+    walk(model, Action::MoveTo { radius: reduced, command: Command::MoveTo(text) })
 }
 
 /// The walker goes to A, the largest pull of the path.
 pub(in crate::explorer) fn to_largest_pull(model: &mut Model) -> Vec<Effect> {
+    to_marked(model, LARGEST_PULL, Id::MoveTo.into())
+}
+
+/// A state of the path that has a letter on the charts.
+struct MarkedState {
+    name: &'static str,
+    told: fn(&TotalsReport) -> Option<&StateReport>,
+    of: fn(&Path) -> Option<&PathState>,
+}
+
+const LARGEST_PULL: MarkedState =
+    MarkedState { name: "largest pull", told: TotalsReport::pull, of: Path::largest_pull };
+const FARTHEST: MarkedState =
+    MarkedState { name: "farthest state", told: |totals| totals.farthest.as_ref(), of: Path::farthest };
+
+/// The walker goes to a state of the path that has a letter.
+fn to_marked(model: &mut Model, marked: MarkedState, command: Command) -> Vec<Effect> {
+    let MarkedState { name, told, of } = marked;
     let Some(curve) = &model.curve else { return Vec::new() };
     let Some(path) = model.path() else {
         let why = match (&curve.unloading, model.cycle().map(|cycle| &cycle.report)) {
@@ -44,39 +75,36 @@ pub(in crate::explorer) fn to_largest_pull(model: &mut Model) -> Vec<Effect> {
             (Err(why), _) => why.clone(),
             _ => "it is being computed".to_owned(),
         };
-        return model.refuse(format!("there is no path, so it has no largest pull: {why}"));
+        return model.refuse(format!("there is no path, so it has no {name}: {why}"));
     };
-    if path.has_reached_its_end && path.totals.pull().is_none() {
-        return model.refuse("nothing pulls on this path, so it has no largest pull".to_owned());
+    if path.has_reached_its_end && told(&path.totals).is_none() {
+        return model.refuse(format!("nothing pulls on this path, so it has no {name}"));
     }
     if let Some(Ok(along)) = &curve.along {
-        let least = along.largest_pull();
+        let least = of(along);
         let at = along.states.iter().position(|state| least.is_some_and(|least| std::ptr::eq(state, least)));
-        let command = Id::MoveTo.into();
         return at.map_or_else(Vec::new, |at| walk(model, Action::MoveToState { at, command }));
     }
-    let Some(pull) = path.totals.pull() else { return Vec::new() };
-    let radius = pull.contact_radius;
-    // Under a dead load an event begins there, and it is reached as that event.
+    let Some(state) = told(&path.totals) else { return Vec::new() };
+    let radius = state.contact_radius;
+    // Under a dead load an event begins at A, under fixed grips at B, and it is reached as that event.
     let begins = |event: &EventReport| {
         event.before.as_ref().is_some_and(|before| (before.contact_radius - radius).abs() <= SAME * radius)
     };
     if let Some(event) = path.events.iter().position(begins) {
         return select_event(model, event + 1);
     }
-    let action = if pull.contacts.len() > 1 {
-        to_contacts(&curve.case, pull, At::Nothing, Id::MoveTo.into())
+    let action = if state.contacts.len() > 1 {
+        to_contacts(&curve.case, state, At::Nothing, command)
     } else {
         let reduced = match &curve.unloading {
-            Ok(path) if model.preset.path.begin == Begin::Disc => {
-                path.largest_pull().map(|at| at.contact_radius)
-            }
+            Ok(path) if model.preset.path.begin == Begin::Disc => of(path).map(|at| at.contact_radius),
             _ => None,
         };
         let radius = reduced.unwrap_or(radius / curve.case.units().length);
-        Action::MoveTo { radius, command: Id::MoveTo.into() }
+        Action::MoveTo { radius, command }
     };
-    // Bodies are pulled hardest on their way apart.
+    // Both lie on the way apart.
     model.inward = true;
     walk(model, action)
 }

@@ -1,6 +1,7 @@
 //! Panels, and the line selected in each.
 
 use super::curve::give_up;
+use super::values::tell_bare_range;
 use crate::explorer::backgrounds::give_up_first;
 use crate::explorer::effect::Effect;
 use crate::explorer::fit::{FitOutcome, fit};
@@ -40,7 +41,10 @@ pub(in crate::explorer) fn cancel(model: &mut Model) -> Vec<Effect> {
 pub(super) fn study(model: &mut Model, column: QuantityColumn, over: Option<String>) -> Vec<Effect> {
     if let Some(name) = over {
         match study_over(model, &name) {
-            Ok((at, range)) => (model.parameter, model.studied_over) = (at, range),
+            Ok((at, range)) => {
+                (model.parameter, model.studied_over) = (at, range);
+                tell_bare_range(model, &name);
+            }
             Err(why) => return model.refuse(why),
         }
     }

@@ -19,7 +19,7 @@ use pulloff_engine::preset::{Preset, Row, Value, groups};
 use pulloff_engine::problem::Start;
 use pulloff_engine::report::number::{short, with_unit};
 use pulloff_engine::text::{closest, counted, greek, show_name, show_path};
-use pulloff_engine::units::{Quantity, UnitSystem, parse_quantity};
+use pulloff_engine::units::{Quantity, Unit, UnitSystem, parse_quantity};
 use std::path::Path;
 use std::sync::Arc;
 
@@ -74,15 +74,32 @@ fn tell_effect(model: &mut Model, key: &str, changed: &Preset) {
 /// Says in which unit a bare number was taken, where another one is shown.
 fn tell_bare(model: &mut Model, key: &str, text: &str, changed: &Preset) {
     let Some((row, value)) = changed.row(key).zip(changed.get(key)) else { return };
-    let number = text.rsplit('=').next().unwrap_or(text);
-    let is_bare = parse_quantity(number).is_ok_and(|value| value.unit.is_none());
-    // A unit of its own is that of bare numbers too.
-    let unit = row.unit_in(&changed.units).filter(|_| is_bare && row.unit.is_none());
-    if let Some(unit) = unit.filter(|unit| (unit.from_si(1.0) - 1.0).abs() > 1e-9) {
+    if let Some(unit) = unit_beside_bare(changed, &row, text.rsplit('=').next().unwrap_or(text)) {
         let now = greek(&labelled(&row, &value, &changed.units));
-        let said =
-            format!("{now} now: a bare number is SI, as in files; one in {} needs its unit", unit.ascii());
-        model.tell(Level::Info, said);
+        model.tell(Level::Info, format!("{now} now: {}", of_bare(&unit)));
+    }
+}
+
+/// The unit in which a row is shown, if a bare number means another one.
+fn unit_beside_bare(preset: &Preset, row: &Row, number: &str) -> Option<Unit> {
+    let is_bare = parse_quantity(number.trim()).is_ok_and(|value| value.unit.is_none());
+    // A unit of its own is that of bare numbers too.
+    let unit = row.unit_in(&preset.units).filter(|_| is_bare && row.unit.is_none())?;
+    ((unit.from_si(1.0) - 1.0).abs() > 1e-9).then(|| unit.clone())
+}
+
+fn of_bare(unit: &Unit) -> String {
+    format!("a bare number is SI, as in files; one in {} needs its unit", unit.ascii())
+}
+
+/// The same for a range, as in KEY=FROM..TO.
+pub(in crate::explorer) fn tell_bare_range(model: &mut Model, text: &str) {
+    let Some((key, range)) = text.split_once('=') else { return };
+    let end = range.trim().trim_start_matches("log:").rsplit("..").next().unwrap_or(range);
+    let row = key_called(&model.preset, key.trim()).ok().and_then(|key| model.preset.row(&key));
+    let found = row.and_then(|row| Some((greek(&row.label), unit_beside_bare(&model.preset, &row, end)?)));
+    if let Some((label, unit)) = found {
+        model.tell(Level::Info, format!("the range of {label}: {}", of_bare(&unit)));
     }
 }
 
@@ -383,8 +400,9 @@ fn tell_points(model: &mut Model, preset: &Preset) {
             // What was assumed about the columns, and how many rows were left out.
             let of_file = preset.notes_of_reading().unwrap_or_default();
             let notes = of_file.into_iter().chain(branches.notes.iter().cloned());
+            let doubts = branches.swapped().into_iter().chain(branches.doubt());
             let said: Vec<String> =
-                branches.swapped().into_iter().chain(branches.doubt()).chain([read]).chain(notes).collect();
+                doubts.chain([read]).chain(preset.dropped_of(&model.preset)).chain(notes).collect();
             model.tell(Level::Info, said.join("; "));
         }
         Err(why) => model.tell(Level::Error, format!("{name} is not drawn: {why}")),

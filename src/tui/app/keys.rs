@@ -447,7 +447,8 @@ impl App {
     /// Opening another preset gives up unsaved changes, so it asks first.
     pub(super) fn open_or_ask(&mut self, command: Command) -> Vec<Effect> {
         if self.model.is_unsaved() && matches!(command, Command::Open(_) | Command::OpenWith { .. }) {
-            let question = "The preset has unsaved changes. y opens the other and loses them, Esc goes back.";
+            let question =
+                "The preset has unsaved changes. y opens the other (undo brings them back), Esc goes back.";
             return self.ask(question.to_owned(), command);
         }
         self.run(command)

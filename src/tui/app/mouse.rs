@@ -236,7 +236,7 @@ impl App {
         if is_near {
             let pin = if let What::Pin(number) = found.what { Some(number) } else { None };
             let before = self.model.walking.map(|walking| walking.id);
-            let effects = self.run(Command::MoveTo(found.contact_radius));
+            let effects = self.run(Command::MoveTo(format!("{:?}", found.contact_radius)));
             match (pin, &mut self.model.walking) {
                 (Some(number), Some(walking)) if before != Some(walking.id) => {
                     walking.instead_of = Some(number);

@@ -132,11 +132,14 @@ fn lines(theme: Theme, model: &Model, path: &PathReport, room: usize) -> Vec<Lin
     for (name, at) in [(" A largest pull", totals.pull()), (" B farthest", totals.farthest.as_ref())] {
         let Some(at) = at else { continue };
         lines.push(Line::raw(name.to_owned()));
-        let mut line = head("  ", shown(&force.symbol, scale.force(at.force)));
-        // A share of Pc also in the unit of the force, if there is one.
         let units = &model.preset.units;
+        let own = with_unit(units, Quantity::Force, at.force, theme.ascii, |x| significant(x, 4));
+        let mut line = match scale.force {
+            Some(_) => head("  ", shown(&force.symbol, scale.force(at.force))),
+            None => head("  ", pair(theme, &format!("{} ", force.symbol), &own)),
+        };
+        // A share of Pc also in the unit of the force, if there is one.
         if scale.force.is_some() && units.unit(Quantity::Force).is_some() {
-            let own = with_unit(units, Quantity::Force, at.force, theme.ascii, |x| significant(x, 4));
             let own = Span::raw(format!("  {own}"));
             line.spans.extend(Some(own).filter(|own| line.width() + own.width() <= room));
         }
