@@ -256,10 +256,10 @@ pub(super) fn entry(name: &str, color: &str, shape: LegendShape, dashes: &str) -
 /// Every name once, lines before marks; a mark out of sight needs none.
 fn legend(figure: &Figure) -> Vec<LegendEntry> {
     let mut named: Vec<&Line> = figure.lines.iter().filter(|line| !line.name.is_empty()).collect();
-    // The computed curve first, as on the screen.
+    // The computed curve first, as on the screen; of a curve in two strokes that of its stable parts.
     named.sort_by_key(|line| match line.role {
-        Role::Pin(number) => (1, std::cmp::Reverse(Role::Pin(usize::MAX - number))),
-        role => (0, std::cmp::Reverse(role)),
+        Role::Pin(number) => (1, std::cmp::Reverse(Role::Pin(usize::MAX - number)), line.is_broken),
+        role => (0, std::cmp::Reverse(role), line.is_broken),
     });
     let mut entries: Vec<LegendEntry> = Vec::new();
     let mut add = |entry: LegendEntry| {

@@ -1,21 +1,20 @@
 //! Pulls at a rate, and times to failure under dead loads, as a document.
 
+mod limits;
+mod text;
+
 use super::columns::columns;
 use super::map::EXACT;
-use super::number::{loss, significant};
 use super::problem::Head;
 use super::rows::{ReportTable, RowsError};
-use super::table::{aligned, ascii_unit, control, head};
 use crate::case::{Case, CaseError};
 use crate::preset::{BasisSpec, Preset, edge};
 use crate::problem::{Control, Part, Printer};
 use crate::progress::{self, Progress, Stopped};
-use crate::quasistatic::admissible::Judge;
 use crate::rate::failure::time_to_failure;
 use crate::rate::{EdgeLaw, Moment, MovingEdge, Pull, PullSettings, Puller, RateError};
-use crate::units::{Quantity, UnitSystem};
+use crate::units::UnitSystem;
 use serde::Serialize;
-use std::fmt::Write;
 
 /// A least force counts as a peak of tension where the force rises after it by more than this share of `P_c`, or of the largest pull
 /// where the gap has no R.
@@ -325,9 +324,10 @@ impl PullReport {
                 parts.iter().map(|part| part.in_units(1.0 / factors.control, 1.0 / factors.time())).collect();
             let part = progress::ProgressPart::new(progress, [k as f64 / count, (k + 1) as f64 / count]);
             let pull = puller.pull(&parts, &part).map_err(refused)?;
-            let overlaps_at = overlap_at_start(&case, &pull, progress).map(|r| r * factors.length);
-            warnings.extend(overlaps_at.map(|r| warning_of_start(&case, pull.start.contact_radius, r)));
-            warnings.extend(limits(preset, &case, &factors, rate.as_ref(), &pull, progress));
+            let overlaps_at = factors.overlap_at_start(&case, &pull, progress);
+            warnings
+                .extend(overlaps_at.map(|r| factors.warning_of_start(&case, pull.start.contact_radius, r)));
+            warnings.extend(factors.limits(preset, &case, rate.as_ref(), &pull, progress));
             if parts[pull.begun..].iter().any(|part| !matches!(part, Part::Apart { .. })) {
                 warnings.push(format!(
                     "the bodies are apart in step {} of {}: the steps after it are not made",
@@ -380,136 +380,6 @@ impl PullReport {
         let rows: Vec<MomentRow> = self.runs.iter().flat_map(|run| run.moments.iter().copied()).collect();
         ReportTable::of(MOMENT_COLUMNS, &rows)
     }
-
-    /// Everything as lines of text.
-    pub fn text(&self) -> String {
-        let units = &self.head.units.shown;
-        let mut text = format!("control: {}\n", control(units, self.control));
-        match &self.runs[..] {
-            [] => {}
-            [run] => text.push_str(&self.one(run)),
-            runs => text.push_str(&self.several(runs)),
-        }
-        for failure in &self.failures {
-            let force = shown(units, Quantity::Force, failure.force);
-            let line = match failure.time {
-                Some(time) => {
-                    format!("a dead load of {force} holds for {}", shown(units, Quantity::Time, time))
-                }
-                None => format!("a dead load of {force} holds indefinitely"),
-            };
-            let _ = writeln!(text, "{line}");
-        }
-        text
-    }
-
-    fn one(&self, run: &RunReport) -> String {
-        let units = &self.head.units.shown;
-        let at = |moment: &MomentReport| {
-            let approach = |approach| format!("  delta {}", shown(units, Quantity::Length, approach));
-            format!(
-                "t {}  contact {}{}  P {}{}",
-                shown(units, Quantity::Time, moment.time),
-                shown(units, Quantity::Length, moment.contact_radius),
-                moment.approach.map_or_else(String::new, approach),
-                shown(units, Quantity::Force, moment.force),
-                self.over_critical(moment.force),
-            )
-        };
-        let mut text = String::new();
-        let mut line = |name: &str, value: &str| {
-            let _ = writeln!(text, "{name:<13} {value}");
-        };
-        if let Some(rate) = run.rate {
-            line("rate", &shown(units, self.rate_quantity(), rate));
-        }
-        line("start", &at(&run.start));
-        // After a turn the edge may have closed before.
-        let opens = run.pinned_until.filter(|at| at.contact_radius > run.start.contact_radius);
-        line(
-            if opens.is_some() { "opens from" } else { "pinned until" },
-            &run.pinned_until.as_ref().map_or("the end".to_owned(), &at),
-        );
-        for snap in &run.snaps {
-            let value = format!(
-                "contact {} > {}  top speed {}  dissipated {}",
-                shown(units, Quantity::Length, snap.from),
-                shown(units, Quantity::Length, snap.to),
-                shown(units, Quantity::Speed, snap.top_speed),
-                energy(units, snap.dissipated),
-            );
-            line("snap", &value);
-        }
-        for peak in &run.tension_peaks {
-            line("tension peak", &at(peak));
-        }
-        // Bodies that are pressed together all the time do not pull.
-        line(if run.peak.force < 0.0 { "largest pull" } else { "least force" }, &at(&run.peak));
-        let last = run.last_contact.map_or("not reached".to_owned(), |last| {
-            let quantity = if self.control == Control::Force { Quantity::Force } else { Quantity::Length };
-            format!(
-                "t {}  control {}",
-                shown(units, Quantity::Time, last.time),
-                shown(units, quantity, last.control)
-            )
-        });
-        line("last contact", &last);
-        line(
-            "dissipated",
-            &run.dissipated.map_or("no bound: the dead load falls".to_owned(), |lost| energy(units, lost)),
-        );
-        line("balance", &format!("{:.1e} of the work", run.balance));
-        text
-    }
-
-    fn several(&self, runs: &[RunReport]) -> String {
-        let units = &self.head.units.shown;
-        let number = |quantity, x: f64| significant(units.shown(quantity, x).number, 6);
-        let mut rows = vec![vec![
-            head(units, "rate", self.rate_quantity()),
-            head(units, "P", Quantity::Force),
-            "P/Pc".to_owned(),
-            "peaks".to_owned(),
-            "snaps".to_owned(),
-            head(units, "top speed", Quantity::Speed),
-            head(units, "apart at", Quantity::Time),
-            head(units, "dissipated", Quantity::Energy),
-            "balance".to_owned(),
-        ]];
-        let dash = || "-".to_owned();
-        let critical = self.head.problem.critical_force.filter(|critical| *critical > 0.0);
-        rows.extend(runs.iter().map(|run| {
-            vec![
-                run.rate.map_or_else(dash, |rate| number(self.rate_quantity(), rate)),
-                number(Quantity::Force, run.peak.force),
-                critical.map_or_else(dash, |critical| significant(run.peak.force / critical, 6)),
-                run.tension_peaks.len().to_string(),
-                run.snaps.len().to_string(),
-                run.top_edge_speed.map_or_else(dash, |speed| number(Quantity::Speed, speed)),
-                run.last_contact.map_or_else(dash, |last| number(Quantity::Time, last.time)),
-                run.dissipated.map_or_else(dash, |lost| number(Quantity::Energy, lost)),
-                format!("{:.0e}", run.balance),
-            ]
-        }));
-        aligned(&rows, 0)
-    }
-
-    fn rate_quantity(&self) -> Quantity {
-        if self.control == Control::Force { Quantity::ForceRate } else { Quantity::Speed }
-    }
-
-    fn over_critical(&self, force: f64) -> String {
-        let critical = self.head.problem.critical_force.filter(|critical| *critical > 0.0);
-        critical.map_or_else(String::new, |critical| format!("  P/Pc {}", significant(force / critical, 6)))
-    }
-}
-
-fn shown(units: &UnitSystem, quantity: Quantity, x: f64) -> String {
-    ascii_unit(units, quantity, x, |x| significant(x, 6))
-}
-
-fn energy(units: &UnitSystem, x: f64) -> String {
-    ascii_unit(units, Quantity::Energy, x, loss)
 }
 
 /// The law of the edge of a preset, and v₀ in its units.
@@ -549,100 +419,4 @@ fn programmes(preset: &Preset, asked: &AskedPulls) -> Result<Vec<Programme>, Pul
     }
     let rate = preset.edge.rate.filter(|_| preset.edge.steps.trim().is_empty());
     Ok(vec![(rate, steps)])
-}
-
-/// The contact radius at which a dead load has all but fallen: the last hundredth of the time is left.
-fn before_fall(pull: &Pull) -> f64 {
-    const OF_TIME: f64 = 0.99;
-    let last = pull.moments.last().map_or(0.0, |moment| moment.time);
-    let before = pull.moments.iter().rfind(|moment| moment.time <= OF_TIME * last);
-    before.map_or(0.0, |moment| moment.contact_radius)
-}
-
-/// Where a pull leaves the range in which the law is good.
-fn limits(
-    preset: &Preset,
-    case: &Case,
-    factors: &Factors,
-    rate: Option<&f64>,
-    pull: &Pull,
-    progress: &dyn Progress,
-) -> Vec<String> {
-    let spec = &preset.edge;
-    let at = rate.map_or_else(String::new, |rate| {
-        let quantity = if case.control == Control::Force { Quantity::ForceRate } else { Quantity::Speed };
-        format!("at the rate {}: ", shown(&case.shown, quantity, *rate))
-    });
-    let mut warnings = Vec::new();
-    // Towards the last contact G grows without bound whatever the rate: what matters is what the edge passes before
-    // that, up to the largest pull, or to the fall of a dead load, and in every snap.
-    let falls = if case.control == Control::Force { before_fall(pull) } else { pull.peak.contact_radius };
-    let inner = pull.snaps.iter().map(|snap| snap.to).fold(falls, f64::min);
-    let watched = pull.moments.iter().filter(|moment| moment.contact_radius >= inner.max(f64::MIN_POSITIVE));
-    let ratios =
-        watched.map(|at| [at.energy_release_rate / case.reduced.work_of_adhesion, at.contact_radius]);
-    let highest = ratios.max_by(|a, b| a[0].total_cmp(&b[0]));
-    if let Some((bound, [ratio, radius])) =
-        spec.highest_ratio.zip(highest).filter(|(bound, at)| at[0] > *bound)
-    {
-        let radius = shown(&case.shown, Quantity::Length, radius * case.units().length);
-        warnings.push(format!(
-            "{at}G/gamma reaches {} at the contact radius {radius}, above edge.highest_ratio = {bound}: the law of the \
-             edge does not extend that far",
-            significant(ratio, 4)
-        ));
-    }
-    if let Some(tau) = spec.relaxation_time {
-        let tau = tau / factors.time();
-        let way = pull.last_contact.map_or(pull.peak.control, |last| last.control).abs();
-        let rate = rate.map(|rate| rate / factors.control * factors.time());
-        if let Some(rate) = rate.filter(|rate| rate * tau > RELAXED * way) {
-            warnings.push(format!(
-                "{at}within edge.relaxation_time the control moves by {} of its value at the last contact; above \
-                 {RELAXED} the bodies are not relaxed, and the force is larger than computed",
-                significant(rate * tau / way, 3)
-            ));
-        }
-        let length = case.reduced.gap.feature_length().unwrap_or(f64::INFINITY);
-        for snap in &pull.snaps {
-            let (zone, room) = (snap.top_speed * tau, length.min(snap.to.max(f64::MIN_POSITIVE)));
-            if zone > room {
-                warnings.push(format!(
-                    "{at}in the snap from {} the edge moves {} times min(s, wavelength) within edge.relaxation_time: \
-                     its zone of dissipation does not fit there",
-                    shown(&case.shown, Quantity::Length, snap.from * factors.length),
-                    significant(zone / room, 3)
-                ));
-                break;
-            }
-        }
-    }
-    if let Some([s, delta]) = pull.closed_to {
-        let judge = Judge::new(&case.reduced, &case.table);
-        if let Some(crest) = judge.verdict(s, delta, progress).overlapping() {
-            warnings.push(format!(
-                "{at}while the edge closes to {}, the bodies would touch ahead of it, at {}: a pull follows only one \
-                 disc",
-                shown(&case.shown, Quantity::Length, s * factors.length),
-                shown(&case.shown, Quantity::Length, crest.radius * factors.length)
-            ));
-        }
-    }
-    warnings
-}
-
-/// Where the bodies would overlap outside the disc from which a pull starts. An edge that opens takes them apart.
-fn overlap_at_start(case: &Case, pull: &Pull, progress: &dyn Progress) -> Option<f64> {
-    let Moment { contact_radius, approach, .. } = pull.start;
-    let judge = Judge::new(&case.reduced, &case.table);
-    Some(judge.verdict(contact_radius, approach, progress).overlapping()?.radius)
-}
-
-fn warning_of_start(case: &Case, s: f64, overlap: f64) -> String {
-    format!(
-        "the disc of radius {} from which the pull starts cannot exist alone: outside it the bodies would overlap at \
-         r = {}; a pull follows only one disc, so its numbers do not hold",
-        shown(&case.shown, Quantity::Length, s * case.units().length),
-        shown(&case.shown, Quantity::Length, overlap)
-    )
 }

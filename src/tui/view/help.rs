@@ -83,6 +83,11 @@ const SHORT: &[(&str, &str)] = &[
         "spring",
         "soft ones snap earlier; none is stiffer than DISPLACEMENT: what snaps there snaps with all of them, alone or within a larger jump",
     ),
+    ("1.1 × smooth", "of a pull at a rate: over the largest pull of the smooth sphere at the same rate"),
+    (
+        "5/6 jumps seen",
+        "of a pull at a rate: five of the six jumps of the slow path leave a peak in its force",
+    ),
     ("W", "beside a pin: the energy lost"),
     ("lost 3e-4", "energy lost in jumps; with a + after it, plus that of a jump without bound"),
     ("dead band", "what the area that closed costs more when it opens: the rest of what a loop loses"),
