@@ -4,9 +4,10 @@ use super::effect::{Effect, Wish};
 use super::job::Job;
 use super::model::{Awaits, Level, Model, Walking};
 use super::node::NodeKind;
-use super::pins::labelled;
-use pulloff_engine::preset::{Key, Preset, Value, edge};
+use super::pins::{labelled, labelled_with};
+use pulloff_engine::preset::{Key, Preset, Row, Value, edge};
 use pulloff_engine::problem::Control;
+use pulloff_engine::text::greek;
 use pulloff_engine::units::UnitSystem;
 use std::path::PathBuf;
 use std::sync::Arc;
@@ -77,6 +78,11 @@ pub(super) fn change(model: &mut Model, preset: Preset) -> Vec<Effect> {
         let rate = labelled(&row, &value, &model.preset.units);
         model.tell(Level::Info, format!("{rate} is dropped: it is no rate under the new control"));
     }
+    if let Some(brought) = brought_by_shape(&model.preset, &preset) {
+        let before = model.message.take().filter(|(level, _)| *level == Level::Info);
+        let said = before.map_or_else(|| brought.clone(), |(_, said)| format!("{said}; {brought}"));
+        model.tell(Level::Info, said);
+    }
     if preset.units != model.preset.units {
         model.history.show_in(&preset.units);
     }
@@ -99,6 +105,21 @@ pub(super) fn change(model: &mut Model, preset: Preset) -> Vec<Effect> {
         effects.push(want_curve(model));
     }
     effects
+}
+
+/// The values of the gap that another shape brings with it, in words; `None` where there are none.
+fn brought_by_shape(before: &Preset, now: &Preset) -> Option<String> {
+    const SHAPE: &str = "gap.shape";
+    if before.get(SHAPE) == now.get(SHAPE) {
+        return None;
+    }
+    let is_new = |row: &Row| {
+        let is_value = row.table() == Some("gap") && row.key != SHAPE && row.kind.is_number();
+        is_value && !row.is_part() && before.get(&row.key) != now.get(&row.key)
+    };
+    let told = |row: Row| Some(labelled_with(&row, &now.get(&row.key)?, &now.units, " = "));
+    let values: Vec<String> = now.rows().filter(is_new).filter_map(told).collect();
+    (!values.is_empty()).then(|| greek(&format!("this shape brings {}", values.join(", "))))
 }
 
 /// Ends the walk under way and drops the commands that wait for it.
