@@ -29,9 +29,7 @@ pub fn run(arguments: &FitArguments) -> Result<ExitCode, Failure> {
     let (files, loaded, options) = arguments.read(&console)?;
     let sinks = arguments.sinks(&files, &loaded)?;
     let stop = StopSignal::catch()?;
-    let said = arguments.said(&loaded.preset)?;
-    let first = files.first().and_then(|path| with_points(path, &loaded, &said).ok());
-    console.note(first.and_then(|preset| preset.dropped_of(&loaded.preset)).as_deref());
+    let said = arguments.said()?;
     let rates = arguments.several.rates(&files, &loaded.preset)?;
     if arguments.several.together {
         return together::run(

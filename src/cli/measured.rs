@@ -1,6 +1,5 @@
 //! What the commands that read measured curves share.
 
-use super::problem::Changes;
 use super::{Failure, problem};
 use crate::store::data::read_points;
 use crate::store::stream;
@@ -16,13 +15,12 @@ use std::sync::Arc;
 
 /// Gives the preset the measured curve in the file `path` (`None` keeps its own curve), the spring that the curve
 /// states where the preset has none, and the values in `said`. All are set at once, because `said` does not describe
-/// the previous curve. Returns a sentence on what the preset says of that curve, which is dropped.
+/// the previous curve.
 pub(super) fn attach(
     preset: &mut Preset,
     path: Option<&Path>,
     said: &[(&'static str, Value)],
-) -> Result<Option<String>, Failure> {
-    let before = preset.clone();
+) -> Result<(), Failure> {
     let file = path.map(|path| Ok::<_, Failure>(Value::Points(Arc::new(read_points(path)?)))).transpose()?;
     let file = file.map(|points| (data::FILE, points));
     preset.set_all(file.into_iter().chain(said.iter().cloned())).map_err(|invalid| match invalid {
@@ -31,8 +29,7 @@ pub(super) fn attach(
         }
         Invalid::Made { cause, .. } => Failure::Usage(cause),
         invalid => Failure::Usage(invalid.to_string()),
-    })?;
-    Ok(preset.dropped_of(&before))
+    })
 }
 
 /// What the user says about the columns and rows of a measured curve.
@@ -73,12 +70,8 @@ impl BranchChoice {
 }
 
 impl ReadingArguments {
-    /// What the options say, with the keys, if it can apply to any file; before them what `changes` have given to `preset`.
-    pub(super) fn said(
-        &self,
-        changes: &Changes,
-        preset: &Preset,
-    ) -> Result<Vec<(&'static str, Value)>, Failure> {
+    /// What the options say, with the keys, if it can apply to any file.
+    pub(super) fn said(&self) -> Result<Vec<(&'static str, Value)>, Failure> {
         if let Some(text) = &self.columns {
             ColumnSpec::parse(text).map_err(|error| Failure::Usage(format!("--columns: {error}")))?;
         }
@@ -90,14 +83,7 @@ impl ReadingArguments {
         ];
         let texts = texts.into_iter().filter_map(|(key, text)| Some((key, Value::Text(text?))));
         let skip = self.skip.map(|skip| (data::SKIP, Value::Integer(skip.into())));
-        let options: Vec<_> = texts.chain(skip).collect();
-        let is_given = |key: &&str| {
-            let named = |text: &String| text.split('=').next().is_some_and(|name| key.ends_with(name.trim()));
-            changes.assignments.iter().any(named) && options.iter().all(|(of, _)| of != key)
-        };
-        let given =
-            data::OF_FILE.into_iter().filter(is_given).filter_map(|key| Some((key, preset.get(key)?)));
-        Ok(given.chain(options.iter().cloned()).collect())
+        Ok(texts.chain(skip).collect())
     }
 }
 

@@ -237,8 +237,7 @@ impl PlotArguments {
 
     /// Gives the preset the requested measured curve, and reports what was found in its own.
     fn lay_points(&self, console: &Console, preset: &mut Preset) -> Result<(), Failure> {
-        let said = self.reading.said(&self.problem.changes, preset)?;
-        console.note(attach(preset, self.measured.as_deref(), &said)?.as_deref());
+        attach(preset, self.measured.as_deref(), &self.reading.said()?)?;
         for (flag, key, text) in
             [("--offset", data::OFFSET, &self.offset), ("--baseline", data::BASELINE, &self.baseline)]
         {

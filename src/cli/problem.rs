@@ -7,7 +7,8 @@ use crate::store::file::LARGEST;
 use crate::store::stream::{self, STANDARD};
 use crate::store::{Loaded, Source, Store, StoreError};
 use clap::Args;
-use pulloff_engine::preset::data;
+use pulloff_engine::preset::called::key_called;
+use pulloff_engine::preset::{data, edge};
 use std::ffi::{OsStr, OsString};
 use std::path::Path;
 
@@ -87,10 +88,19 @@ impl ProblemArguments {
         let loaded = match (store.load(&source, &self.changes.all()), control) {
             (Ok(loaded), _) => loaded,
             (Err(error), None) => return Err(error.into()),
-            (Err(_), Some(control)) => {
+            (Err(error), Some(control)) => {
                 let mut loaded = store.load(&source, assignments)?;
                 let assigned = loaded.preset.assign(CONTROL, control);
                 assigned.map_err(|invalid| Failure::Usage(format!("--control: {invalid}")))?;
+                // A rate of the preset is dropped under another control. One given on the command line is wrong.
+                let is_given = |text: &String| {
+                    let key = text.split('=').next().unwrap_or_default();
+                    key_called(&loaded.preset, key.trim())
+                        .is_ok_and(|key| [edge::RATE, edge::STEPS].contains(&&*key))
+                };
+                if assignments.iter().any(is_given) {
+                    return Err(error.into());
+                }
                 loaded
             }
         };

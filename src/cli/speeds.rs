@@ -53,8 +53,7 @@ pub fn run(arguments: &SpeedsArguments) -> Result<ExitCode, Failure> {
     let inputs = problem.inputs(&loaded);
     let inputs = file.map_or(inputs.clone(), |file| inputs.with("the points", file));
     let sink = arguments.destination.sink(inputs)?;
-    let said = arguments.reading.said(&arguments.changes, &loaded.preset)?;
-    console.note(attach(&mut loaded.preset, file.map(PathBuf::as_path), &said)?.as_deref());
+    attach(&mut loaded.preset, file.map(PathBuf::as_path), &arguments.reading.said()?)?;
     let preset = &loaded.preset;
     let stop = StopSignal::catch()?;
     let pair = MeasuredPair::ALL.into_iter().find(|pair| arguments.from.as_deref() == Some(pair.name()));

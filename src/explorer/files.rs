@@ -11,8 +11,10 @@ use super::{data, script, study_table, walk_table};
 use crate::mend::WordedFault;
 use crate::print::PictureFormat;
 use crate::store::{Listed, Overwrite, Source, Store, StoreError, WriteError, write_atomically};
-use pulloff_engine::preset::Preset;
 use pulloff_engine::preset::changes::{changes, differences};
+use pulloff_engine::preset::data::DataSpec;
+use pulloff_engine::preset::schema::NONE;
+use pulloff_engine::preset::{Invalid, Preset, Value, data as data_keys};
 use pulloff_engine::progress::Unwatched;
 use pulloff_engine::report::columns;
 use pulloff_engine::report::path::{EventReport, events_table};
@@ -21,6 +23,43 @@ use pulloff_engine::report::{Head, TraceReport, json, rows};
 use pulloff_engine::text::show_path;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
+
+/// Gives `preset` other values. Another measured curve drops what held for the previous one, but keeps columns without which it
+/// cannot be read.
+fn assign(preset: &mut Preset, assignments: &[Assignment]) -> Result<(), Invalid> {
+    if !assignments.iter().any(|(key, _)| key == data_keys::FILE) {
+        return preset.assign_all(assignments);
+    }
+    let given = with_curve(preset, preset.data.clone(), assignments);
+    let is_same = given.as_ref().is_ok_and(|given| {
+        let sources = preset.data.source.as_ref().zip(given.data.source.as_ref());
+        sources.is_none_or(|(before, now)| now.path() == before.path() || now.has_bytes_of(before))
+            && (given.data.source.is_some() || preset.data.source.is_none())
+    });
+    let bare = preset.data.without_file();
+    let with_columns = DataSpec { columns: preset.data.columns.clone(), ..bare.clone() };
+    *preset = if is_same {
+        given?
+    } else {
+        with_curve(preset, bare, assignments)
+            .or_else(|invalid| with_curve(preset, with_columns, assignments).map_err(|_| invalid))?
+    };
+    Ok(())
+}
+
+/// The preset with other values and with `data` in place of its own, without the file; a measured curve comes last, together
+/// with the values that describe its columns. One that is taken away, or replaced, no longer refuses what it states
+/// otherwise.
+fn with_curve(preset: &Preset, data: DataSpec, assignments: &[Assignment]) -> Result<Preset, Invalid> {
+    let mut changed = preset.clone();
+    changed.data = data;
+    changed.assign(data_keys::FILE, NONE)?;
+    let is_curve = |assignment: &&Assignment| [data_keys::FILE, data_keys::COLUMNS].contains(&&*assignment.0);
+    let (curve, others): (Vec<_>, Vec<_>) = assignments.iter().partition(is_curve);
+    changed.assign_all(&others.into_iter().cloned().collect::<Vec<_>>())?;
+    changed.set_all(curve.into_iter().map(|(key, text)| (&**key, Value::Text(text.clone()))))?;
+    Ok(changed)
+}
 
 /// Does a job.
 pub fn run(store: &Store, job: Job) -> Done {
@@ -31,7 +70,7 @@ pub fn run(store: &Store, job: Job) -> Done {
             Done::Named(store.list().presets.into_iter().map(named).collect())
         }
         Job::Assign { mut preset, assignments } => {
-            match preset.assign_all(&assignments) {
+            match assign(&mut preset, &assignments) {
                 Ok(()) => {
                     // Found here, its branches need not be found later where nobody may wait for them.
                     let _ = preset.branches();

@@ -224,7 +224,7 @@ impl Theme {
         if line.chars().count() <= room {
             return line.to_owned();
         }
-        let rest = self.glyph("…", "...");
+        let rest: String = self.glyph("…", "...").chars().take(room).collect();
         let kept: String = line.chars().take(room.saturating_sub(rest.chars().count())).collect();
         // A word that was cut in the middle is removed.
         let is_whole = line.chars().nth(kept.chars().count()).is_none_or(char::is_whitespace);
@@ -305,6 +305,7 @@ fn transliterate(c: char) -> &'static str {
         '←' => "<",
         '³' => "^3",
         '⁴' => "^4",
+        '…' => "...",
         '·' | '┈' => ".",
         '×' => "X",
         '±' => "+-",

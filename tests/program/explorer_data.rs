@@ -325,6 +325,46 @@ fn a_foreign_header_asks_for_the_columns_and_the_answer_is_one_change() {
 }
 
 #[test]
+fn another_file_drops_what_held_for_the_previous_one() {
+    let folder = tempfile::tempdir().unwrap();
+    let rows: Vec<String> = (0..40).map(|i| format!("{},{}", 40 - i, 1.5 * f64::from(20 - i))).collect();
+    let put = |name: &str, head: &str| {
+        let path = folder.path().join(name);
+        std::fs::write(&path, format!("{head}{}\n", rows.join("\n"))).unwrap();
+        path.to_str().unwrap().to_owned()
+    };
+    let bare = put("bare.csv", "a,b\n");
+    let also_bare = put("also-bare.csv", "c,d\n");
+    let other = put("other.csv", "approach [um],force [uN]\n");
+    let mut session = Session::new("lens");
+    says(&mut session, &format!("set data.file={bare} data.columns=\"approach=1 [um],force=2 [uN]\""));
+    says(&mut session, "set data.baseline=2uN data.skip=1 data.free=gamma");
+    let said = |session: &Session| {
+        let data = &session.model.preset.data;
+        (data.columns.is_empty(), data.baseline.is_some(), data.skip, data.free.clone())
+    };
+    let given = (false, true, 1, "gamma".to_owned());
+    assert_eq!(said(&session), given);
+    // The same file again changes nothing. One without a header is read as before.
+    says(&mut session, &format!("data {bare}"));
+    assert_eq!(said(&session), given);
+    says(&mut session, &format!("data {also_bare}"));
+    assert_eq!(said(&session), (false, false, 0, "gamma".to_owned()));
+    let message = session.model.message.as_ref().unwrap().1.clone();
+    assert!(
+        message.contains("data.skip, data.baseline of ") && message.contains(" are dropped"),
+        "{message}"
+    );
+    session.does(Command::Plain(Id::Undo));
+    assert_eq!(said(&session), given);
+    // A header that says what the columns are counts, and what is given with the file holds.
+    says(&mut session, &format!("set data.file={other} data.skip=3"));
+    assert_eq!(said(&session), (true, false, 3, "gamma".to_owned()));
+    says(&mut session, "data none");
+    assert_eq!(said(&session), (true, false, 0, "gamma".to_owned()));
+}
+
+#[test]
 fn a_walk_of_ones_own_lies_on_its_own_curve() {
     for (walk, exported) in [
         ("next-event\n".repeat(4), Export::Walk),

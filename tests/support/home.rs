@@ -113,6 +113,8 @@ impl Home {
         while !is_caught() && child.try_wait().expect("its state").is_none() {
             sleep(Duration::from_millis(5));
         }
+        // The handler is installed a moment before it knows what to do: a signal in between is lost.
+        sleep(Duration::from_millis(20));
         // If it has already ended, its status shows that.
         let _ = kill_process(Pid::from_child(&child), signal);
         Ended::of(child.wait_with_output().expect("its end"))

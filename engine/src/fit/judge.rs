@@ -23,7 +23,6 @@ mod spring;
 mod touch;
 mod untold;
 
-pub(super) use apart::of_contact;
 pub(super) use range::{of_first_pull, unseen};
 pub(super) use scores::BRANCHES;
 pub(super) use spring::of_spring;
@@ -98,7 +97,7 @@ pub(super) fn reasons(evidence: Evidence, preset: &Preset, clipped: Option<Clipp
     reasons.extend(contact::of_contact(evidence));
     reasons.extend(apart::of_apart(problem, solved, scatter));
     // Rows that are not apart can be mistaken for a tilt.
-    let in_contact = of_contact(problem, solved);
+    let in_contact = apart::of_contact(problem, solved);
     let tilt = if in_contact.is_some() { None } else { scores::of_tilt(evidence) };
     reasons.extend(in_contact.into_iter().chain(tilt));
     reasons.extend(scores::of_shape(evidence));

@@ -6,8 +6,7 @@ use super::determined::{Determined, determined};
 use super::fitted::{Fitted, too_small, unmoved, values};
 use super::intervals::intervals;
 use super::judge::{
-    Evidence, doubts, extent, of_contact, of_first_pull, of_hidden, of_sparse, of_spring, of_unclear,
-    reasons, unseen,
+    Evidence, doubts, extent, of_first_pull, of_hidden, of_sparse, of_spring, of_unclear, reasons, unseen,
 };
 use super::laid::laid;
 use super::least_squares::Ending;
@@ -73,34 +72,40 @@ pub(super) struct Posed<'a> {
 }
 
 impl<'a> Posed<'a> {
-    /// Poses and solves the fit of the free keys of `preset` to `branches`. A last row that lies alone behind a jump is apart if
-    /// the curve through the others leads nowhere near it.
+    /// Poses and solves the fit of the free keys of `preset` to `branches`, without a last row or two behind a jump if the curve
+    /// through the others leads nowhere near them, or only with a zero of the force that is far off.
     pub(super) fn new(
         preset: &'a Preset,
         branches: &'a Branches,
         options: &'a Options,
         progress: &dyn Progress,
     ) -> Result<Self, FitError> {
-        /// A row costs more than this, in squares of the scale of the residuals, where the curve misses it.
+        /// Rows cost more than this, in squares of the scale of the residuals, where the curve misses them.
         const MISSED: f64 = 8.0;
-        let lone = branches.with_lone_apart().filter(|_| options.asked.free == FreePart::Found);
-        let Some(apart) = lone else { return Self::of(preset, Cow::Borrowed(branches), options, progress) };
-        let [in_contact, apart] = [(Cow::Borrowed(branches), [0.0, 0.4]), (Cow::Owned(apart), [0.4, 0.8])]
+        let fewer = branches.without_last().filter(|_| options.asked.free == FreePart::Found);
+        let Some(fewer) = fewer else { return Self::of(preset, Cow::Borrowed(branches), options, progress) };
+        let [all, fewer] = [(Cow::Borrowed(branches), [0.0, 0.4]), (Cow::Owned(fewer), [0.4, 0.8])]
             .map(|(branches, part)| Self::of(preset, branches, options, &ProgressPart::new(progress, part)));
         // σ of the force differs from fit to fit.
         let cost = |posed: &Self, cost: f64| cost * posed.problem.sigma[1].powi(2);
-        let is_missed = |all: &Self, apart: &Self| {
-            let most = apart.solved.minimum.cost + MISSED * apart.solved.scale.powi(2);
-            cost(all, all.solved.minimum.cost) > cost(apart, most)
+        let is_missed = |all: &Self, fewer: &Self| {
+            let most = fewer.solved.minimum.cost + MISSED * fewer.solved.scale.powi(2);
+            cost(all, all.solved.minimum.cost) > cost(fewer, most)
+                || all.is_off_tare() && !fewer.is_off_tare()
         };
-        let has_force = |apart: &Self| of_contact(&apart.problem, &apart.solved).is_none();
-        match (in_contact, apart) {
-            (Ok(in_contact), Ok(apart)) if !is_missed(&in_contact, &apart) || !has_force(&apart) => {
-                Ok(in_contact)
-            }
-            (_, Ok(apart)) => Ok(apart),
-            (in_contact, Err(_)) => in_contact,
+        match (all, fewer) {
+            (Ok(all), Ok(fewer)) if !is_missed(&all, &fewer) => Ok(all),
+            (_, Ok(fewer)) => Ok(fewer),
+            (all, Err(_)) => all,
         }
+    }
+
+    /// Whether the force is zero further off than a tare may be, where no rows show it.
+    fn is_off_tare(&self) -> bool {
+        /// In standard deviations of a tare.
+        const FAR: f64 = 3.0;
+        let baseline = self.problem.instrument_at(&self.solved.minimum.parameters).baseline;
+        baseline.abs() > FAR * self.branches.tare()
     }
 
     /// The same, with all rows that `branches` have.

@@ -49,9 +49,7 @@ pub(super) fn jump(x: &[f64], force: &[f64]) -> Option<RowJump> {
     if n < 2 * FEWEST {
         return None;
     }
-    let Some(mut found) = of_many(x, force) else {
-        return if n < SPARSE { of_few(force) } else { of_last(x, force, BEHIND) };
-    };
+    let Some(mut found) = of_many(x, force) else { return if n < SPARSE { of_few(force) } else { None } };
     // On waves the highest jump may not be the last one: the bodies are apart behind that.
     while n - found.at >= SPARSE {
         let next = of_many(&x[found.at..], &force[found.at..])
@@ -62,26 +60,25 @@ pub(super) fn jump(x: &[f64], force: &[f64]) -> Option<RowJump> {
     Some(found)
 }
 
-/// The jump before the last `rows`, too few for a jump in noise: it must be higher than the rise before it and than the change
-/// behind it. Where a record ends at its last contact, the force rises as a square root: its last two rises are as 0.41 to 1.
-pub(super) fn of_last(x: &[f64], force: &[f64], rows: usize) -> Option<RowJump> {
+/// Whether the last `rows` may lie behind a jump, though they are too few to show one in noise: it is higher than the rise before
+/// it and than the change behind it. Where a record ends at its last contact, the force rises as a square root: its last
+/// two rises are as 0.41 to 1.
+pub(super) fn may_be_behind(x: &[f64], force: &[f64], rows: usize) -> bool {
     /// A jump is this share of how far the force was below the rows behind it. The rise before it and the change behind it are at
     /// most these shares of the jump.
     const OF_PULL: f64 = 0.25;
     const BEFORE: f64 = 0.75;
     const AFTER: f64 = 0.25;
-    let at = force.len().checked_sub(rows).filter(|at| *at >= SPARSE)?;
+    let Some(at) = force.len().checked_sub(rows).filter(|at| *at >= SPARSE) else { return false };
     let (before, behind) = force.split_at(at);
-    let sigma = scatter_over(x, force)?.max(FLOOR * range(force.iter().copied()));
+    let sigma = scatter_over(x, force).unwrap_or(0.0).max(FLOOR * range(force.iter().copied()));
     let level = behind.iter().sum::<f64>() / rows as f64;
     let lowest = before.iter().copied().fold(f64::INFINITY, f64::min);
     let height = level - before[at - 1];
-    let deviations = height / (sigma * (1.0 + 1.0 / rows as f64).sqrt());
-    let is_jump = deviations > SURE
+    height > SURE * sigma * (1.0 + 1.0 / rows as f64).sqrt()
         && height > OF_PULL * (level - lowest)
         && before[at - 1] - before[at - 2] < BEFORE * height
-        && range(behind.iter().copied()) < AFTER * height;
-    is_jump.then_some(RowJump { at, deviations })
+        && range(behind.iter().copied()) < AFTER * height
 }
 
 /// Whether the bodies are in contact between two jumps: the force has a slope as before the first of them. Bridges between

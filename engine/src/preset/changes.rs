@@ -1,9 +1,9 @@
 //! What turns one preset into another: assignments as a user would type them.
 
+use super::groups;
 use super::model::Preset;
 use super::schema::{CHOOSERS, Fallback, Key, Kind, NONE, Parameter, SYSTEMS};
 use super::value::Value;
-use super::{data, groups};
 use crate::units::UnitSystem;
 
 /// Keys that come first, because they decide which other keys there are.
@@ -37,10 +37,7 @@ pub fn changes(from: &Preset, to: &Preset) -> Option<Vec<(Key, String)>> {
 pub fn differences(from: &Preset, to: &Preset) -> Vec<(Key, String)> {
     let rows = to.rows().filter(|row| !row.is_part() && groups::row(&row.key).is_none());
     rows.filter_map(|row| {
-        // Another file drops what held for the previous one.
-        let may_drop = from.data.source != to.data.source && data::OF_FILE.contains(&&*row.key);
-        let is_other = |value: &Value| may_drop || from.get(&row.key).as_ref() != Some(value);
-        let value = wanted(from, to, &row).filter(is_other)?;
+        let value = wanted(from, to, &row).filter(|value| from.get(&row.key).as_ref() != Some(value))?;
         Some((row.key.clone(), typed(&row, &to.units, &value)))
     })
     .collect()

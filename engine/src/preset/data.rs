@@ -32,7 +32,7 @@ pub const FREE: &str = "data.free";
 pub const UNCERTAIN: &str = "data.uncertain";
 /// The key that says whether the file or the preset counts for the instrument.
 pub const SETTINGS: &str = "data.settings";
-/// The keys of what holds for one file only: how it is read, and where its zeros are. Another file drops them.
+/// The keys of what holds for one file only: how it is read, and where its zeros are.
 pub const OF_FILE: [&str; 8] = [COLUMNS, SEGMENT, FREE_PART, SIGNS, SKIP, OFFSET, BASELINE, TILT];
 /// The words of [`SETTINGS`].
 pub const SETTINGS_OF: [&str; 2] = ["file", "preset"];
@@ -71,6 +71,13 @@ pub struct DataSpec {
 }
 
 impl DataSpec {
+    /// The same without the file, and without what holds for it alone.
+    #[must_use]
+    pub fn without_file(&self) -> Self {
+        let Self { is_alone, free, uncertain, .. } = self.clone();
+        Self { is_alone, free, uncertain, ..Self::default() }
+    }
+
     /// What lies between model and instrument, in the signs of `branches`: what is not given is 0, and the baseline that
     /// of the free part.
     pub fn instrument(&self, branches: &Branches) -> Instrument {

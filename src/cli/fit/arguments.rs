@@ -222,9 +222,9 @@ impl FitArguments {
     }
 
     /// What the command line says about the files, with the keys.
-    pub(super) fn said(&self, preset: &Preset) -> Result<Vec<(&'static str, Value)>, Failure> {
+    pub(super) fn said(&self) -> Result<Vec<(&'static str, Value)>, Failure> {
         let uncertain = self.uncertain.as_ref().map(|given| (data::UNCERTAIN, Value::Text(given.join(","))));
-        Ok(self.reading.said(&self.changes, preset)?.into_iter().chain(uncertain).collect())
+        Ok(self.reading.said()?.into_iter().chain(uncertain).collect())
     }
 
     /// Checks all outputs. An output ending in .toml is the preset with the fitted values; the report then goes to

@@ -27,7 +27,7 @@ macro_rules! each_command {
             { run: |model| scale_pace(model, 0.5) }
         Faster "faster" ")" "faster" always Nothing Screen "twice as many" { run: |model| scale_pace(model, 2.0) }
         MoveTo "move-to" "L" "to A" curve Curve Yes
-            "move to A, the largest pull of the path, where a dead load lets go; or to a contact radius, or to an event by number, as a digit does"
+            "move to A, the largest pull of the path; or to B, the farthest state, to a contact radius, or to an event by number, as a digit does"
             { words: "largest pull peak", run: to_largest_pull,
             takes: takes("A, B, event N, or a contact radius", destination).offering(|_| words(["A", "B", "event"])) }
         Reverse "reverse" "b" "back" turns InOrder Yes "turn round: steps and events then go the other way"

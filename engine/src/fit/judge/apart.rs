@@ -43,7 +43,7 @@ pub(super) fn of_apart(problem: &FitProblem, solved: &SolvedFit, scatter: &Scatt
 
 /// Rows taken to be apart that do not have the force of bodies apart: a record that ends in contact, and is flat there,
 /// looks as if it ended apart.
-pub(in super::super) fn of_contact(problem: &FitProblem, solved: &SolvedFit) -> Option<Reason> {
+pub(super) fn of_contact(problem: &FitProblem, solved: &SolvedFit) -> Option<Reason> {
     /// The baseline goes through the rows apart, unless those in contact contradict them this far, in σ.
     const FAR: f64 = 10.0;
     (0..problem.branches()).find_map(|branch| {

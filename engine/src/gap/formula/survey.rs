@@ -41,7 +41,7 @@ const FINEST: f64 = 1.0 / 4096.0;
 
 /// Across a jump the values differ by as much over the smaller of these shares of the largest radius as over the larger one, to
 /// this share.
-const ACROSS: [f64; 2] = [1e-6, 1e-12];
+const ACROSS: [f64; 2] = [1e-9, 1e-12];
 const AS_MUCH: f64 = 0.5;
 
 /// Where a formula is no gap.
@@ -60,6 +60,9 @@ impl NoGap {
     /// What is wrong, with the radii as `units` show them.
     pub fn words(&self, units: &UnitSystem) -> String {
         let [radius, largest] = [self.radius, self.largest].map(|r| said(units, Quantity::Length, r));
+        if self.jumps && self.radius <= ACROSS[1] * self.largest {
+            return "the formula jumps at the axis, where the gap must be continuous".to_owned();
+        }
         if self.jumps {
             return format!(
                 "the formula jumps at r = {radius} (it must be continuous up to r = {largest}): give a ledge a width, as \
@@ -329,6 +332,8 @@ mod tests {
         for (text, radius) in [
             ("r^2/2 + 0.01*step(r - 0.15)", 0.15),
             ("r^2/2 - 1e-6*sign(r - 0.3001)", 0.3001),
+            ("r^2/2 + 1e-9*step(r - 0.3)", 0.3),
+            ("r^2/2 + 0.01*sign(r)", 0.0),
             ("sign(r - 1)*r", 1.0),
             ("1/(2*step(r - 0.3001) - 1)", 0.3001),
             ("r^2 + 0.01*atan(1/(r - 0.7))", 0.7),

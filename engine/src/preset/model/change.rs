@@ -2,7 +2,6 @@
 
 use super::Preset;
 use crate::gap::Shape;
-use crate::preset::Row;
 use crate::preset::build::build;
 use crate::preset::data;
 use crate::preset::edge;
@@ -35,8 +34,6 @@ impl Preset {
     /// one with a similar name, or with 1. A `basis.kind` drops the keys of the old basis and takes the defaults of the
     /// new one. In SI a control of another dimension drops the rate. A group (see [`groups`]) changes the values it
     /// follows from. The rows of a `gap.file` come from the preset's files, relative to the folder of the previous file.
-    /// Another `data.file` drops what held for the previous one (see [`data::OF_FILE`]), but keeps columns without which it
-    /// cannot be read.
     ///
     /// # Errors
     /// The key is unknown, or the preset would no longer be valid; it is left as it was.
@@ -72,7 +69,6 @@ impl Preset {
         let mut changed = self.clone();
         if !plain.is_empty() {
             let mut values = self.keyed();
-            self.forget_file(&mut values, &plain);
             for (row, value) in plain {
                 self.lay(&mut values, &row, value);
             }
@@ -83,24 +79,6 @@ impl Preset {
         }
         *self = changed;
         Ok(())
-    }
-
-    /// Removes what holds for the present file of a measured curve, if `changes` replace or remove it.
-    fn forget_file(&self, values: &mut Values, changes: &[(Row, Value)]) {
-        let (Some(before), Some((_, now))) =
-            (&self.data.source, changes.iter().find(|(row, _)| row.key == data::FILE))
-        else {
-            return;
-        };
-        let now = if let Value::Points(now) = now { Some(now) } else { None };
-        if now.is_some_and(|now| now.path() == before.path() || now.has_bytes_of(before)) {
-            return;
-        }
-        let is_read = |columns: &str| now.is_some_and(|now| now.measured(columns).is_ok());
-        let keeps_columns = !is_read("") && is_read(&self.data.columns);
-        for key in data::OF_FILE.into_iter().filter(|key| !(keeps_columns && *key == data::COLUMNS)) {
-            values.remove(key);
-        }
     }
 
     /// Lays a value over the others: removes what it displaces, and adds what it requires.
@@ -236,17 +214,14 @@ impl Preset {
     }
 
     /// Gives several keys the values of texts, one after the other as on a command line, or all at once if one of them
-    /// needs a later one or describes a measured curve that is among them.
+    /// needs a later one.
     ///
     /// # Errors
     /// As [`assign`](Self::assign), for all at once; the preset is left as it was.
     pub fn assign_all(&mut self, assignments: &[(Key, String)]) -> Result<(), Invalid> {
         let mut changed = self.clone();
         let (rates, others): (Vec<_>, Vec<_>) = assignments.iter().partition(|(key, _)| key == edge::RATE);
-        let has_file = assignments.iter().any(|(key, _)| key == data::FILE);
-        if has_file
-            || others.into_iter().chain(rates).try_for_each(|(key, text)| changed.assign(key, text)).is_err()
-        {
+        if others.into_iter().chain(rates).try_for_each(|(key, text)| changed.assign(key, text)).is_err() {
             changed = self.clone();
             let values = assignments.iter().map(|(key, text)| Ok((&**key, self.assigned(key, text)?)));
             changed.set_all(values.collect::<Result<Vec<_>, Invalid>>()?)?;
