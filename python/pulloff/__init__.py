@@ -262,4 +262,10 @@ def merge(
     OutputError
         A part is missing, duplicated, unfinished or from another sweep; ``out`` exists and ``overwrite`` is not set.
     """
-    _engine.merge([os.fspath(part) for part in parts], out, overwrite)
+    if isinstance(parts, (str, bytes, os.PathLike)):
+        raise TypeError(f"parts = {parts!r} must be a list of files")
+    files = [os.fspath(part) for part in parts]
+    for part in files:
+        if os.path.exists(out) and os.path.exists(part) and os.path.samefile(part, out):
+            raise OutputError(f"{os.fspath(out)} is also read, as a part: write to another file")
+    _engine.merge(files, out, overwrite)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Callable, Tuple
+from typing import TYPE_CHECKING, Any, Callable, Tuple
 
 from . import _engine
 from .errors import NotCertified, PresetError
@@ -18,8 +18,18 @@ _SAMPLES = (65, 3841)
 
 
 def plain(values: ArrayLike) -> NDArray[np.float64]:
-    """An array as the engine takes it: a field of a record, or what came from another process, may be misaligned."""
-    return np.require(values, np.float64, ["C", "A"])
+    """An array as the engine takes it: a field of a record, or what came from another process, may be misaligned. Masked
+    values become NaN."""
+    if np.iscomplexobj(values):
+        raise PresetError("complex numbers have no place here: give real ones")
+    return np.require(unmasked(values), np.float64, ["C", "A"])
+
+
+def unmasked(values: Any) -> Any:
+    """Numbers with NaN in place of what a mask hides; everything else as it is."""
+    if isinstance(values, np.ma.MaskedArray) and values.dtype.kind in "iuf":
+        return values.astype(float).filled(np.nan)
+    return values
 
 
 def column(name: str, values: ArrayLike) -> NDArray[np.float64]:

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any, Mapping, Optional, Sequence, Tuple, Union
 
 from . import _engine
 from ._afm import AfmCurve
+from ._gap import unmasked
 from .errors import DataError
 
 if TYPE_CHECKING:
@@ -38,7 +39,7 @@ def points_of(data: Any, in_si: bool) -> Tuple[str, bytes]:
         return name, _engine.read_file(name)
     else:
         raise DataError(f"data is of the type {type(data).__name__}: it must be a file, a DataFrame or a dict of columns")
-    arrays = {str(name): np.asarray(values) for name, values in columns.items()}
+    arrays = {str(name): np.asarray(unmasked(values)) for name, values in columns.items()}
     lengths = {array.size for array in arrays.values() if array.ndim == 1}
     if len(lengths) != 1 or any(array.ndim != 1 for array in arrays.values()):
         shapes = ", ".join(f"{name} {array.shape}" for name, array in arrays.items())

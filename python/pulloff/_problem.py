@@ -181,7 +181,7 @@ class Problem:
                 f"start_contact_radius = {float(start_contact_radius)!r}",
             ]
         )
-        native = _engine.Problem.of_rows(text, radii, gaps)
+        native = _engine.Problem.of_rows(text, radii, gaps, str(units) == "SI")
         return cls._of(native.replace(dict(changes)) if changes else native, "from_gap", native)
 
     def replace(self, changes: Optional[Mapping[str, Value]] = None, **more: Value) -> "Problem":
@@ -583,8 +583,8 @@ class Problem:
         return self._across(s, r)[2]
 
     def _across(self, s: float, r: ArrayLike) -> Tuple[float, NDArray[np.float64], NDArray[np.float64]]:
-        radii = np.asarray(r, dtype=float)
-        flat = plain(radii).reshape(-1)
+        radii = plain(r)
+        flat = radii.reshape(-1)
         approach, pressure, gap = self._native.across(float(s), flat)
         return approach, pressure.reshape(radii.shape), gap.reshape(radii.shape)
 

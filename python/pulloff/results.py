@@ -214,8 +214,13 @@ class Pull(Result):
         return f"{len(self.runs)} pulls, {len(self.failures)} dead loads"
 
     def plot(self, ax: Any = None) -> Any:
-        """Draws the largest pull over the rate, and returns the axes of matplotlib."""
+        """Draws the largest pull over the rate, or the time to failure over the dead load, and returns the axes of matplotlib."""
         ax = self._axes(ax)
+        if "rate" not in self:
+            ax.semilogy(self["force"], self["time"], ".-")
+            ax.set_xlabel(self._unit("force", "dead load P"))
+            ax.set_ylabel("time to failure")
+            return ax
         ax.loglog(self.rate, -self.peak_force, ".-")
         ax.set_xlabel("rate")
         ax.set_ylabel(self._unit("force", "largest pull −P"))
@@ -552,7 +557,8 @@ class Sweep(Table):
     def plot(self, quantity: Optional[str] = None, ax: Any = None) -> Any:
         """Draws a quantity, by default the first, over the first axis, and returns the axes of matplotlib.
 
-        For an ensemble it is the median, with areas that hold 50 and 90 % of the members.
+        For an ensemble it is the median, with areas that hold 50 and 90 % of the members; without an axis, the distribution of
+        its members. Over two axes or more, colours show the quantity on the first two.
         """
         if quantity is None:
             quantity = self.columns[1 + len(self.axes)]
@@ -564,12 +570,25 @@ class Sweep(Table):
             except ImportError:
                 raise ImportError("plot needs matplotlib: pip install matplotlib") from None
             ax = plt.figure().add_subplot()
+        if not self.axes:
+            values = self[quantity] if self.of_members is None else self.of_members[quantity]
+            ax.hist(values[np.isfinite(values)], bins="auto")
+            ax.set_xlabel(quantity)
+            ax.set_ylabel("members")
+            return ax
+        if len(self.axes) > 1:
+            shown = quantity if quantity in self else f"{quantity}.q50"
+            drawn = ax.scatter(self[self.axes[0]], self[self.axes[1]], c=self[shown], marker="s")
+            ax.figure.colorbar(drawn, label=shown)
+            ax.set_xlabel(self.axes[0])
+            ax.set_ylabel(self.axes[1])
+            return ax
         along, drawn = self[self.axes[0]], quantity
         if self.of_members is not None and f"{quantity}.q50" in self:
             drawn = f"{quantity}.q50"
             for low, high in (("q05", "q95"), ("q25", "q75")):
                 ax.fill_between(along, self[f"{quantity}.{low}"], self[f"{quantity}.{high}"], alpha=0.3, color="tab:blue")
-        ax.plot(along, self[drawn], ".-" if len(self.axes) == 1 else ".")
+        ax.plot(along, self[drawn], ".-")
         ax.set_xlabel(self.axes[0])
         ax.set_ylabel(quantity)
         return ax

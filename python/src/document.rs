@@ -100,9 +100,9 @@ impl Document {
 /// Columns of true and false.
 const FLAGS: [&str; 5] = ["stable_displacement", "stable_force", "stable_chosen", "admissible", "changes"];
 /// Columns of whole numbers.
-const WHOLE: [&str; 3] = ["step", "newton_iterations", "number"];
+const WHOLE: [&str; 7] = ["step", "newton_iterations", "number", "row", "window", "tension_peaks", "snaps"];
 /// Columns of texts.
-const TEXTS: [&str; 5] = ["kind", "direction", "stable", "key", "unit"];
+const TEXTS: [&str; 6] = ["kind", "direction", "segment", "stable", "key", "unit"];
 
 /// The cells of a column by its name, whatever its rows are: true or false, whole numbers, texts, otherwise numbers
 /// with NaN for missing ones. Texts, and flags of which some are unknown, become a list with None for missing ones.

@@ -147,19 +147,20 @@ impl Problem {
         Ok(Self { preset: preset_of(py, path.parent(), &path.to_string_lossy(), &text)? })
     }
 
-    /// A preset from its text, whose profile has these rows in its own unit of length.
+    /// A preset from its text, whose profile has these rows in its own unit of length: in metres if it is `in_si`.
     #[staticmethod]
     fn of_rows(
         py: Python<'_>,
         text: &str,
         r: PyReadonlyArray1<'_, f64>,
         h: PyReadonlyArray1<'_, f64>,
+        in_si: bool,
     ) -> PyResult<Self> {
         let rows = ProfileRows {
             name: "arrays".to_owned(),
             radii: r.as_slice()?.to_vec(),
             gaps: h.as_slice()?.to_vec(),
-            unit: Unit::parse("m", 0).ok(),
+            unit: Unit::parse("m", 0).ok().filter(|_| in_si),
             ..ProfileRows::default()
         };
         let read =

@@ -43,7 +43,6 @@ impl Progress for Listener {
         if self.asked.get().is_some_and(|asked| asked.elapsed() < PAUSE) {
             return false;
         }
-        self.asked.set(Some(Instant::now()));
         let asked = Python::attach(|py| {
             py.check_signals()?;
             match &self.progress {
@@ -51,6 +50,8 @@ impl Progress for Listener {
                 None => Ok(()),
             }
         });
+        // From the end: a slow progress function must not be called at every chance.
+        self.asked.set(Some(Instant::now()));
         match asked {
             Ok(()) => false,
             Err(error) => {
