@@ -41,7 +41,7 @@ const FINEST: f64 = 1.0 / 4096.0;
 
 /// Across a jump the values differ by as much over the smaller of these shares of the largest radius as over the larger one, to
 /// this share.
-const ACROSS: [f64; 2] = [1e-9, 1e-12];
+const ACROSS: [f64; 2] = [1e-10, 1e-12];
 const AS_MUCH: f64 = 0.5;
 
 /// Where a formula is no gap.
