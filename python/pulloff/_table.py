@@ -149,7 +149,7 @@ class _Kept:
 
 class Result(Table):
     """What was computed from one problem: a document with rows. Numbers are in the units of the problem. It can be pickled and
-    copied, and two are equal if their documents are; its columns are read-only."""
+    copied, and two are equal if their documents are."""
 
     def __init__(self, document: Union[_engine.Document, _Kept]) -> None:
         super().__init__({})
@@ -176,8 +176,6 @@ class Result(Table):
             values = self._document.column(name)
             if isinstance(values, list):
                 values = np.array(values, dtype=object)
-            # The document is what counts: a column that could be changed would no longer be that of the document.
-            values.flags.writeable = False
             self._arrays[name] = values
         return self._arrays[name]
 

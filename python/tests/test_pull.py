@@ -26,6 +26,8 @@ def test_dead_loads_are_borne_or_not():
     assert held.failures[0]["time"] is None
     assert 0 < held.failures[1]["time"] < math.inf
     assert held.row_count == 2
+    pytest.importorskip("matplotlib")
+    assert held.plot().get_ylabel() == "time to failure"
 
 
 def test_what_is_missing_is_said():
@@ -58,6 +60,10 @@ def test_speeds_of_a_made_edge():
     assert np.allclose(found.energy_release_rate, 0.05, rtol=1e-6)
     assert np.allclose(found.speed, 5e-7, rtol=1e-6)
     assert found.to_dict()["from"] == "force and contact radius"
+    assert found.segment.tolist() == ["retraction"] * 60
+    assert found.row.tolist() == list(range(1, 61)) and found.window.dtype.kind == "i"
+    hidden = np.ma.array(force, mask=np.arange(60) == 30)
+    assert problem.speeds({**points, "force": hidden}).row_count == 59
     with pytest.raises(pulloff.DataError, match="no approach"):
         problem.speeds(points, of="approach-radius")
     with pytest.raises(pulloff.DataError, match="is not one of force-radius"):

@@ -201,3 +201,8 @@ def test_parts_of_an_ensemble_are_joined(tmp_path):
     assert pulloff.sweep(ENSEMBLE, out=tmp_path / "all.csv") == whole
     with pytest.raises(pulloff.OutputError, match="already exists"):
         pulloff.merge(parts, tmp_path / "all.csv")
+    with pytest.raises(pulloff.OutputError, match="also read"):
+        pulloff.merge([tmp_path / "all.csv"], tmp_path / "all.csv", overwrite=True)
+    with pytest.raises(TypeError, match="list of files"):
+        pulloff.merge(str(parts[0]), tmp_path / "one.csv")
+
