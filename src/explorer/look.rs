@@ -73,7 +73,9 @@ pub(super) fn map_of(model: &mut Model, x: &Key, y: Option<&Key>) {
         }
         Ok(axes) => match axes.ranges(&model.preset) {
             Ok(_) => {
-                [&axes.x, &axes.y].into_iter().for_each(|axis| tell_bare_range(model, axis));
+                for axis in [&axes.x, &axes.y] {
+                    tell_bare_range(model, axis);
+                }
                 show_map(model, axes);
             }
             Err(why) => model.tell(Level::Error, why),

@@ -29,6 +29,7 @@ impl Setting {
     }
 
     /// The same problem with its numbers shown in `units`.
+    #[must_use]
     pub fn shown_in(&self, units: &UnitSystem) -> Self {
         let mut preset = self.preset.clone();
         preset.units = units.clone();

@@ -164,7 +164,7 @@ impl Shape {
                 let Some(bound) = self.slope_bound(disc) else { return known };
                 let here = self.jet(middle).first.abs();
                 steepest = if here.is_finite() { steepest.max(here) } else { steepest };
-                if !(bound <= FACTOR * steepest) && lo < middle && middle < hi {
+                if (bound > FACTOR * steepest || bound.is_nan()) && lo < middle && middle < hi {
                     halves.extend([[lo, middle], [middle, hi]]);
                 }
             }

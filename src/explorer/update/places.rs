@@ -25,7 +25,7 @@ const SAME: f64 = 1e-6;
 /// The walker goes to the state with this contact radius, as typed: a bare number is in the preset's base units.
 pub(super) fn move_to(model: &mut Model, text: String) -> Vec<Effect> {
     if text == B {
-        return to_marked(model, FARTHEST, Command::MoveTo(text));
+        return to_marked(model, &FARTHEST, Command::MoveTo(text));
     }
     let Some(row) = model.preset.row(START_KEYS[0]) else { return Vec::new() };
     let radius = match model.preset.number(&row, &text) {
@@ -50,7 +50,7 @@ pub(super) fn move_to(model: &mut Model, text: String) -> Vec<Effect> {
 
 /// The walker goes to A, the largest pull of the path.
 pub(in crate::explorer) fn to_largest_pull(model: &mut Model) -> Vec<Effect> {
-    to_marked(model, LARGEST_PULL, Id::MoveTo.into())
+    to_marked(model, &LARGEST_PULL, Id::MoveTo.into())
 }
 
 /// A state of the path that has a letter on the charts.
@@ -66,8 +66,8 @@ const FARTHEST: MarkedState =
     MarkedState { name: "farthest state", told: |totals| totals.farthest.as_ref(), of: Path::farthest };
 
 /// The walker goes to a state of the path that has a letter.
-fn to_marked(model: &mut Model, marked: MarkedState, command: Command) -> Vec<Effect> {
-    let MarkedState { name, told, of } = marked;
+fn to_marked(model: &mut Model, marked: &MarkedState, command: Command) -> Vec<Effect> {
+    let MarkedState { name, told, of } = *marked;
     let Some(curve) = &model.curve else { return Vec::new() };
     let Some(path) = model.path() else {
         let why = match (&curve.unloading, model.cycle().map(|cycle| &cycle.report)) {
