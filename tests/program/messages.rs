@@ -112,6 +112,10 @@ fn steep_gaps_are_told_in_sweeps_too() {
     let home = Home::new();
     let ended = home.run(&["unload", "cone", "--set", "slope=5"]);
     assert!(ended.err.contains("the gap has slopes up to 5: "), "{}", ended.err);
+    // However narrow the steep place is.
+    let narrow = "gap.formula=r^2/2+0.002*tanh((r-0.3)/1e-4)";
+    let ended = home.run(&["trace", "formula", "--set", narrow]);
+    assert!(ended.err.contains("the gap has slopes up to 20: "), "{}", ended.err);
     let axis = |to: &str| {
         format!(
             "preset='wavy-sphere'\nquantities=['start_contact_radius']\n[[axis]]\nkey='gap.amplitude'\nvalues=[0, {to}]"

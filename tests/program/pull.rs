@@ -131,6 +131,32 @@ fn ranges_steps_and_rows() {
 }
 
 /// The snap after the largest pull is the fastest.
+/// A crater beside the disc at the start: there the bodies overlap by 0.0249, by another program.
+#[test]
+fn a_start_outside_which_the_bodies_overlap_is_told_once() {
+    let dip = |depth: f64| {
+        let gap = format!("gap.formula=r^2/2-{depth}*exp(-((r-0.5)/0.05)^2)");
+        let set = [gap.as_str(), "gamma=0.002", "start_contact_radius=0.3", "edge.exponent=0.5"];
+        let set = set.iter().flat_map(|value| ["--set", *value]);
+        let all = ["formula"].into_iter().chain(set).chain(["--rate", "0.01", "--rate", "0.02"]);
+        document(&all.collect::<Vec<_>>())
+    };
+    let told = |found: &Value| {
+        let warnings = found["warnings"].as_array().unwrap();
+        warnings.iter().filter(|text| text.as_str().unwrap().contains("would overlap at r = 0.49")).count()
+    };
+    let found = dip(0.12);
+    assert_eq!(told(&found), 1, "{}", found["warnings"]);
+    let at = found["runs"][1]["overlaps_at"].as_f64().unwrap();
+    assert!((at - 0.494716).abs() < 1e-5, "{at}");
+    let found = dip(0.01);
+    assert!(told(&found) == 0 && found["runs"][0]["overlaps_at"].is_null(), "{}", found["warnings"]);
+    let set = ["gap.formula=r^2/2-0.12*exp(-((r-0.5)/0.05)^2)", "gamma=0.002", "start_contact_radius=0.3"];
+    let set = set.iter().flat_map(|value| ["--set", *value]).chain(["--set", "edge.exponent=0.5"]);
+    let all: Vec<&str> = ["formula"].into_iter().chain(set).chain(["--hold-force", "-0.002"]).collect();
+    assert!(told(&document(&all)) == 1);
+}
+
 #[test]
 fn a_snap_beyond_the_range_of_the_law_is_told() {
     let set = ["--set", "edge.highest_ratio=2", "--rate", "0.01"];

@@ -73,7 +73,7 @@ pub(super) struct Posed<'a> {
 
 impl<'a> Posed<'a> {
     /// Poses and solves the fit of the free keys of `preset` to `branches`, without a last row or two behind a jump if the curve
-    /// through the others leads nowhere near them, or only with a zero of the force that is far off.
+    /// through the others leads nowhere near them, or only with a zero of the force that they lift.
     pub(super) fn new(
         preset: &'a Preset,
         branches: &'a Branches,
@@ -90,8 +90,7 @@ impl<'a> Posed<'a> {
         let cost = |posed: &Self, cost: f64| cost * posed.problem.sigma[1].powi(2);
         let is_missed = |all: &Self, fewer: &Self| {
             let most = fewer.solved.minimum.cost + MISSED * fewer.solved.scale.powi(2);
-            cost(all, all.solved.minimum.cost) > cost(fewer, most)
-                || all.is_off_tare() && !fewer.is_off_tare()
+            cost(all, all.solved.minimum.cost) > cost(fewer, most) || all.is_lifted() && !fewer.is_lifted()
         };
         match (all, fewer) {
             (Ok(all), Ok(fewer)) if !is_missed(&all, &fewer) => Ok(all),
@@ -100,12 +99,16 @@ impl<'a> Posed<'a> {
         }
     }
 
-    /// Whether the force is zero further off than a tare may be, where no rows show it.
-    fn is_off_tare(&self) -> bool {
-        /// In standard deviations of a tare.
+    /// Whether the zero of the force lies high above zero, where no rows show it. Rows apart that count as contact lift it by a
+    /// third of the largest pull: the jump under fixed grips then looks like the last rise of a contact.
+    fn is_lifted(&self) -> bool {
+        /// In standard deviations of a tare, and as a share of the largest pull.
         const FAR: f64 = 3.0;
+        const LIFTED: f64 = 0.25;
         let baseline = self.problem.instrument_at(&self.solved.minimum.parameters).baseline;
-        baseline.abs() > FAR * self.branches.tare()
+        let forces = self.branches.list.iter().flat_map(|branch| &branch.attached).map(|point| point.force);
+        let pull = baseline - forces.fold(f64::INFINITY, f64::min);
+        baseline > FAR * self.branches.tare() && baseline > LIFTED * pull
     }
 
     /// The same, with all rows that `branches` have.

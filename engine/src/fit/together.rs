@@ -475,7 +475,7 @@ impl JointUncertainty {
 
 /// How many directions of the values take a degree of freedom each from χ², where the residuals scatter by `noise`: a direction
 /// that is known too poorly for an error takes one too, as long as the values in it have room to adapt.
-fn lowering(jacobian: &DMatrix<f64>, noise: f64) -> usize {
+fn adapting(jacobian: &DMatrix<f64>, noise: f64) -> usize {
     /// Logarithms of values have room for a few units: a change by 1 shows by this many σ.
     const SHOWS: f64 = 0.2;
     jacobian.singular_values().iter().filter(|value| **value > SHOWS * noise).count()
@@ -490,7 +490,7 @@ fn collapse(joint: &Joint, together: &[SolvedFit], scatters: &[Scatter]) -> Coll
         let as_one = scatter.correlation.rows();
         sum += 2.0 * (one - other) / (as_one * noise(problem, alone, joint.robust).powi(2));
         rows += problem.real(&alone.minimum.at.residuals).len() as f64 / as_one;
-        own += lowering(&alone.minimum.at.jacobian, noise(problem, alone, joint.robust) * as_one.sqrt());
+        own += adapting(&alone.minimum.at.jacobian, noise(problem, alone, joint.robust) * as_one.sqrt());
     }
     let chi_squared = sum.max(0.0);
     let values = own.saturating_sub(joint.count);

@@ -140,9 +140,9 @@ impl Shape {
         let radii = (0..RADII).map(|i| contact_radius - width * i as f64 / RADII as f64);
         let steepest = radii.map(|r| self.jet(r).first.abs()).fold(0.0, f64::max);
         // Of the other shapes the waves tell how fine they are.
-        let is_any = matches!(self, Self::Formula(_));
+        let is_formula = matches!(self, Self::Formula(_));
         let steepest =
-            if is_any { self.steepest_within(contact_radius, steepest.max(STEEP)) } else { steepest };
+            if is_formula { self.steepest_within(contact_radius, steepest.max(STEEP)) } else { steepest };
         (steepest > STEEP).then_some(steepest)
     }
 

@@ -83,8 +83,8 @@ impl Branches {
             let name = branch.segment.name();
             fewer.notes.extend((!rows.is_empty()).then(|| {
                 format!(
-                    "left out, as behind a jump that the other rows do not show: {} {}, at the end of the {name}. If the bodies \
-                     are apart there, --free-part tells the fit the zero of the force",
+                    "left out: {} {} at the end of the {name}, behind a jump that the model does not make there. If the bodies are \
+                     apart by then, --free-part gives the fit the zero of the force",
                     if rows.len() > 1 { "rows" } else { "row" },
                     rows.join(" and ")
                 )

@@ -11,10 +11,12 @@ use crate::case::{Case, CaseError};
 use crate::preset::{BasisSpec, Preset, edge};
 use crate::problem::{Control, Part, Printer};
 use crate::progress::{self, Progress, Stopped};
+use crate::rate::equation::HeldDisc;
 use crate::rate::failure::time_to_failure;
 use crate::rate::{EdgeLaw, Moment, MovingEdge, Pull, PullSettings, Puller, RateError};
 use crate::units::UnitSystem;
 use serde::Serialize;
+use std::collections::BTreeSet;
 
 /// A least force counts as a peak of tension where the force rises after it by more than this share of `P_c`, or of the largest pull
 /// where the gap has no R.
@@ -241,11 +243,16 @@ impl Factors {
         }
     }
 
-    fn run(&self, rate: Option<f64>, pull: &Pull, control: Control) -> RunReport {
+    fn run(
+        &self,
+        rate: Option<f64>,
+        pull: &Pull,
+        (control, overlaps_at): (Control, Option<f64>),
+    ) -> RunReport {
         RunReport {
             rate,
             start: self.moment(&pull.start),
-            overlaps_at: None,
+            overlaps_at,
             pinned_until: pull.pinned_until.as_ref().map(|moment| self.moment(moment)),
             peak: self.moment(&pull.peak),
             tension_peaks: pull.tension_peaks.iter().map(|moment| self.moment(moment)).collect(),
@@ -268,6 +275,39 @@ impl Factors {
             balance: pull.balance,
             moments: pull.moments.iter().map(|moment| self.row(rate, moment)).collect(),
         }
+    }
+
+    /// How long the start bears each of these dead loads.
+    fn failures(
+        &self,
+        case: &Case,
+        edge: &MovingEdge,
+        loads: &[f64],
+        (warnings, progress): (&mut Vec<String>, &dyn Progress),
+    ) -> Result<Vec<FailureReport>, PullError> {
+        if loads.is_empty() {
+            return Ok(Vec::new());
+        }
+        let panels = case.panels(progress)?;
+        let mut failures = Vec::new();
+        for &force in loads {
+            let load = force / self.force;
+            let approach = HeldDisc::new(&panels, Control::Force, case.start, load).approach;
+            let overlaps_at = self.overlap_at_start(case, approach, progress);
+            warnings.extend(overlaps_at.map(|r| self.warning_of_start(case, r)));
+            let time =
+                time_to_failure(&panels, edge, case.start, load).map_err(|error| refused(error, case))?;
+            failures.push(FailureReport { force, time: time.map(|time| time * self.time()) });
+        }
+        Ok(failures)
+    }
+}
+
+/// A pull that cannot be followed, with its numbers as the user sees them.
+fn refused(error: RateError, case: &Case) -> PullError {
+    match error {
+        RateError::Stopped(Stopped) => PullError::Case(CaseError::Stopped(Stopped)),
+        error => PullError::Rate { error, printer: Box::new(case.printer()) },
     }
 }
 
@@ -308,10 +348,6 @@ impl PullReport {
             rise: case.critical_force().map(|force| RISE * force / units.force),
             settings: PullSettings::default(),
         };
-        let refused = |error: RateError| match error {
-            RateError::Stopped(Stopped) => PullError::Case(CaseError::Stopped(Stopped)),
-            error => PullError::Rate { error, printer: Box::new(case.printer()) },
-        };
         let programmes = programmes(preset, asked)?;
         let mut warnings = case.warnings_of_problem(case.start);
         if preset.basis != BasisSpec::Exact {
@@ -323,10 +359,9 @@ impl PullReport {
             let parts: Vec<Part> =
                 parts.iter().map(|part| part.in_units(1.0 / factors.control, 1.0 / factors.time())).collect();
             let part = progress::ProgressPart::new(progress, [k as f64 / count, (k + 1) as f64 / count]);
-            let pull = puller.pull(&parts, &part).map_err(refused)?;
-            let overlaps_at = factors.overlap_at_start(&case, &pull, progress);
-            warnings
-                .extend(overlaps_at.map(|r| factors.warning_of_start(&case, pull.start.contact_radius, r)));
+            let pull = puller.pull(&parts, &part).map_err(|error| refused(error, &case))?;
+            let overlaps_at = factors.overlap_at_start(&case, pull.start.approach, progress);
+            warnings.extend(overlaps_at.map(|r| factors.warning_of_start(&case, r)));
             warnings.extend(factors.limits(preset, &case, rate.as_ref(), &pull, progress));
             if parts[pull.begun..].iter().any(|part| !matches!(part, Part::Apart { .. })) {
                 warnings.push(format!(
@@ -335,18 +370,12 @@ impl PullReport {
                     parts.len()
                 ));
             }
-            runs.push(RunReport { overlaps_at, ..factors.run(*rate, &pull, case.control) });
+            runs.push(factors.run(*rate, &pull, (case.control, overlaps_at)));
         }
-        let mut failures = Vec::new();
-        if !asked.loads.is_empty() {
-            let panels = case.panels(progress)?;
-            for &force in &asked.loads {
-                let time =
-                    time_to_failure(&panels, &edge, case.start, force / units.force).map_err(refused)?;
-                failures.push(FailureReport { force, time: time.map(|time| time * factors.time()) });
-            }
-        }
-        warnings.dedup();
+        let failures = factors.failures(&case, &edge, &asked.loads, (&mut warnings, progress))?;
+        // What holds for all pulls is said once.
+        let mut said = BTreeSet::new();
+        warnings.retain(|warning| said.insert(warning.clone()));
         Ok(Self {
             head: Head::new("pull", preset, &case),
             warnings,

@@ -56,18 +56,28 @@ pub(in crate::explorer) fn to_largest_pull(model: &mut Model) -> Vec<Effect> {
 /// A state of the path that has a letter on the charts.
 struct MarkedState {
     name: &'static str,
+    /// Why a path that has reached its end has none.
+    missing: &'static str,
     told: fn(&TotalsReport) -> Option<&StateReport>,
     of: fn(&Path) -> Option<&PathState>,
 }
 
-const LARGEST_PULL: MarkedState =
-    MarkedState { name: "largest pull", told: TotalsReport::pull, of: Path::largest_pull };
-const FARTHEST: MarkedState =
-    MarkedState { name: "farthest state", told: |totals| totals.farthest.as_ref(), of: Path::farthest };
+const LARGEST_PULL: MarkedState = MarkedState {
+    name: "largest pull",
+    missing: "nothing pulls on this path",
+    told: TotalsReport::pull,
+    of: Path::largest_pull,
+};
+const FARTHEST: MarkedState = MarkedState {
+    name: "farthest state",
+    missing: "this path stops early",
+    told: |totals| totals.farthest.as_ref(),
+    of: Path::farthest,
+};
 
 /// The walker goes to a state of the path that has a letter.
 fn to_marked(model: &mut Model, marked: &MarkedState, command: Command) -> Vec<Effect> {
-    let MarkedState { name, told, of } = *marked;
+    let MarkedState { name, missing, told, of } = *marked;
     let Some(curve) = &model.curve else { return Vec::new() };
     let Some(path) = model.path() else {
         let why = match (&curve.unloading, model.cycle().map(|cycle| &cycle.report)) {
@@ -78,7 +88,7 @@ fn to_marked(model: &mut Model, marked: &MarkedState, command: Command) -> Vec<E
         return model.refuse(format!("there is no path, so it has no {name}: {why}"));
     };
     if path.has_reached_its_end && told(&path.totals).is_none() {
-        return model.refuse(format!("nothing pulls on this path, so it has no {name}"));
+        return model.refuse(format!("{missing}, so it has no {name}"));
     }
     if let Some(Ok(along)) = &curve.along {
         let least = of(along);

@@ -8,7 +8,7 @@ use crate::preset::Preset;
 use crate::problem::Control;
 use crate::progress::Progress;
 use crate::quasistatic::admissible::Judge;
-use crate::rate::{Moment, Pull};
+use crate::rate::Pull;
 use crate::units::Quantity;
 
 /// The contact radius at which a dead load has all but fallen: the last hundredth of the time is left.
@@ -93,19 +93,23 @@ impl Factors {
         warnings
     }
 
-    /// Where the bodies would overlap outside the disc from which a pull starts. An edge that opens takes them apart.
-    pub(super) fn overlap_at_start(&self, case: &Case, pull: &Pull, progress: &dyn Progress) -> Option<f64> {
-        let Moment { contact_radius, approach, .. } = pull.start;
+    /// Where the bodies would overlap outside the disc at the start, at this approach. An edge that opens takes them apart.
+    pub(super) fn overlap_at_start(
+        &self,
+        case: &Case,
+        approach: f64,
+        progress: &dyn Progress,
+    ) -> Option<f64> {
         let judge = Judge::new(&case.reduced, &case.table);
-        Some(judge.verdict(contact_radius, approach, progress).overlapping()?.radius * self.length)
+        Some(judge.verdict(case.start, approach, progress).overlapping()?.radius * self.length)
     }
 
-    pub(super) fn warning_of_start(&self, case: &Case, s: f64, overlap: f64) -> String {
+    pub(super) fn warning_of_start(&self, case: &Case, overlap: f64) -> String {
+        let [start, overlap] =
+            [case.start * self.length, overlap].map(|r| shown(&case.shown, Quantity::Length, r));
         format!(
-            "the disc of radius {} from which the pull starts cannot exist alone: outside it the bodies would overlap at \
-             r = {}; a pull follows only one disc, so its numbers do not hold",
-            shown(&case.shown, Quantity::Length, s * self.length),
-            shown(&case.shown, Quantity::Length, overlap)
+            "the disc of radius {start} at the start cannot exist alone: outside it the bodies would overlap at r = {overlap}. \
+             One disc is followed all the same, and its numbers do not hold"
         )
     }
 }
