@@ -16,16 +16,19 @@ use super::view::{Axes, Home, Overlay, Overlays, ScreenPanel, View, Window};
 use super::walk::measure;
 use crate::mend::WordedFault;
 use crate::store::{Fingerprint, Listing, Loaded, Source};
+use pulloff_engine::case::critical_force;
 use pulloff_engine::fit::Fit;
 use pulloff_engine::preset::groups::GROUPS;
 use pulloff_engine::preset::{Key, Preset, Row, Value, data};
 use pulloff_engine::problem::{Begin, Control, Turn};
 use pulloff_engine::quasistatic::Path;
 use pulloff_engine::quasistatic::walk::At;
+use pulloff_engine::report::number::{significant, with_unit};
 use pulloff_engine::report::path::EventReport;
 use pulloff_engine::stability::MapAxis;
 use pulloff_engine::sweep::quantity::Under;
 use pulloff_engine::sweep::{QUANTITIES, QuantityColumn};
+use pulloff_engine::units::Quantity;
 use std::collections::VecDeque;
 use std::sync::Arc;
 
@@ -214,6 +217,15 @@ pub fn is_on_curve(curve: &CurveData, node: &Node) -> bool {
 }
 
 impl Model {
+    /// A force of `preset` as the axes show it, with its unit.
+    pub fn force_in_words(&self, preset: &Preset, force: f64, digits: usize) -> String {
+        let critical = critical_force(preset).filter(|_| self.axes == Axes::Reduced);
+        critical.map_or_else(
+            || with_unit(&preset.units, Quantity::Force, force, false, |x| significant(x, digits)),
+            |critical| format!("{} Pc", significant(force / critical, digits)),
+        )
+    }
+
     /// A session on a loaded preset; nothing is computed yet.
     pub fn new(loaded: Loaded) -> Self {
         let stiffness = match loaded.preset.path.control {

@@ -18,6 +18,9 @@ const PLACES: f64 = 1e3;
 /// Values that differ by no more than this share of the largest are equal: what they differ by is rounding.
 const EQUAL: f64 = 1e-9;
 
+/// How much further a range reaches above its only value than below.
+const OFF_MIDDLE: f64 = 1.05;
+
 impl Bounds {
     /// The range of `points` with a small margin; finite and ascending whatever the points are.
     pub fn of(points: impl IntoIterator<Item = (f64, f64)>) -> Self {
@@ -78,7 +81,8 @@ fn roomy([lo, hi]: [f64; 2]) -> [f64; 2] {
     if !range.is_finite() || is_level([lo, hi]) {
         let half = (0.5 * lo.abs()).max(0.5 * hi.abs());
         let half = if half > 0.0 && half.is_finite() { half } else { 0.5 };
-        return [0.5 * lo + 0.5 * hi - half, 0.5 * lo + 0.5 * hi + half];
+        // Not in the middle: there the least rounding would move a level line from one row of dots to the next.
+        return [0.5 * lo + 0.5 * hi - half, 0.5 * lo + 0.5 * hi + OFF_MIDDLE * half];
     }
     [lo - ROOM * range, hi + ROOM * range]
 }

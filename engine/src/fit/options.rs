@@ -3,8 +3,9 @@
 use super::problem::{ADHESION, Target};
 use crate::measured::Asked;
 use crate::measured::{Abscissa, BranchError};
+use crate::preset::called::key_called;
 use crate::preset::data::{BASELINE, OFFSET, TILT};
-use crate::preset::invalid::of_unknown;
+use crate::preset::invalid::{Invalid, of_unknown};
 use crate::preset::schema::{CHOOSERS, Kind, RANGE_KEYS, Row};
 use crate::preset::{Preset, Value, edge};
 use crate::progress::Stopped;
@@ -165,16 +166,20 @@ pub fn target(preset: &Preset, abscissa: Abscissa, name: &str) -> Result<Target,
         TILT | "tilt" => return Ok(Target::Tilt),
         _ => {}
     }
-    let rows: Vec<Row> = preset.rows().collect();
-    let is_named = |row: &&Row| row.key == name || row.label == name || greek(&row.label) == name;
-    let gamma = ["γ", "gamma", "w"].contains(&name).then_some(ADHESION);
-    let Some(row) = rows.iter().find(is_named).or_else(|| rows.iter().find(|row| Some(&*row.key) == gamma))
-    else {
-        let applies = |row: &&Row| row.fits(CHOOSERS[0], preset.gap.name());
-        let known = rows.iter().filter(applies).map(|row| (&*row.key, &*row.label));
-        let hint = of_unknown(closest_key(name, known));
-        return Err(refused(format!("is not a key of this preset{hint}")));
+    let key = key_called(preset, name).map_err(|invalid| match invalid {
+        Invalid::Several { keys, .. } => refused(format!("is short for several: {keys}")),
+        _ => {
+            let rows: Vec<Row> = preset.rows().collect();
+            let applies = |row: &&Row| row.fits(CHOOSERS[0], preset.gap.name());
+            let known = rows.iter().filter(applies).map(|row| (&*row.key, &*row.label));
+            refused(format!("is not a key of this preset{}", of_unknown(closest_key(name, known))))
+        }
+    })?;
+    let unfit = || {
+        let why = "is not a positive number of the bodies, gap, adhesion or spring; only those can be fitted";
+        refused(why.to_owned())
     };
+    let row = preset.row(&key).ok_or_else(unfit)?;
     let others = [
         "material.effective_modulus",
         ADHESION,
@@ -192,10 +197,7 @@ pub fn target(preset: &Preset, abscissa: Abscissa, name: &str) -> Result<Target,
         _ => false,
     };
     if !fits || !is_positive {
-        return Err(refused(
-            "is not a positive number of the bodies, gap, adhesion or spring; only those can be fitted"
-                .to_owned(),
-        ));
+        return Err(unfit());
     }
     // What a closing edge gains starts from what an opening one costs.
     let given = if row.key == edge::CLOSING_ADHESION { preset.get(ADHESION) } else { None };
@@ -204,11 +206,9 @@ pub fn target(preset: &Preset, abscissa: Abscissa, name: &str) -> Result<Target,
         Some(Value::Number(value)) if value < 0.0 => {
             Err(refused("starts below 0: only positive values can be fitted".to_owned()))
         }
-        Some(_) => {
-            Err(refused("starts at 0, which has no logarithm: give it a first guess with --set".to_owned()))
-        }
+        Some(_) => Err(refused("starts at 0, which has no logarithm: set it to a first guess".to_owned())),
         None => Err(refused(format!(
-            "has no value in this preset to start from: give it a first guess, as in --set {}=...",
+            "has no value in this preset to start from: set {} to a first guess",
             row.key
         ))),
     }

@@ -143,9 +143,15 @@ impl Trail {
         let tolerance = (OF_NOISE * reach.noise).clamp(TOLERANCE[0], TOLERANCE[1]);
         let (puller, rate) = puller(preset, reduced, table, held, tolerance)?;
         let start = puller.start;
+        let is_far = |at: [f64; 3]| eye.x(at) - reach.turn[0] > FAR * reach.length;
+        // The transform of a gap is no smaller than the gap where that grows: what is far by half of it needs no table, which would
+        // be as long as the start is far.
+        let least = 0.5 * reduced.gap.jet(start).value - (TAU * reduced.work_of_adhesion * start).sqrt();
+        if is_far([start, least, 0.0]) {
+            return None;
+        }
         let begun = ExactBasis::new(Arc::clone(table), start).equilibrium(reduced, start)?;
-        let beyond = eye.x([start, begun.approach, begun.force]) - reach.turn[0];
-        if beyond > FAR * reach.length {
+        if is_far([start, begun.approach, begun.force]) {
             return None;
         }
         let pull = puller.pull(&[Part::Apart { rate }], &Unwatched).ok()?;

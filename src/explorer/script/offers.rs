@@ -139,14 +139,13 @@ pub(in crate::explorer) fn branches_of(typing: &Typing<'_>) -> Vec<Offer> {
     let all = branches::branches(history).into_iter().filter_map(|branch| {
         let node = branch.last()?;
         let state = node.seen();
-        let value =
-            |quantity, x| with_unit(&node.setting.preset.units, quantity, x, false, |x| significant(x, 4));
         let place = if node.is_apart() {
             "the bodies are apart".to_owned()
         } else {
-            let length = |x| value(Quantity::Length, x);
+            let units = &node.setting.preset.units;
+            let length = |x| with_unit(units, Quantity::Length, x, false, |x| significant(x, 4));
             let [delta, s] = [state.approach, state.contact_radius].map(length);
-            format!("δ {delta} P {} s {s}", value(Quantity::Force, state.force))
+            format!("δ {delta} P {} s {s}", typing.model.force_in_words(&node.setting.preset, state.force, 4))
         };
         let differs = pins::name(&node.setting.preset, &typing.model.preset);
         let word = if branch.is_here { "here" } else { "" };

@@ -1,6 +1,5 @@
 //! Steps, runs, jumps and undo: what is requested of the walk, and what becomes of its answers.
 
-use crate::explorer::Axes;
 use crate::explorer::availability::goes_on;
 use crate::explorer::command::{Id, LENGTHS, PACES};
 use crate::explorer::curve::CurveData;
@@ -11,7 +10,6 @@ use crate::explorer::pins::letter;
 use crate::explorer::requests::{stop, stop_walk, want_curve};
 use crate::explorer::status_line::{back_or_anew, of_before};
 use crate::explorer::walk::{Action, Request, WalkOutcome, from_exact};
-use pulloff_engine::case::critical_force;
 use pulloff_engine::problem::Begin;
 use pulloff_engine::quasistatic::path::Direction;
 use pulloff_engine::quasistatic::walk::At;
@@ -227,11 +225,7 @@ fn tell_of_present(model: &mut Model, number: usize) {
     let preset = &node.setting.preset;
     let state = node.seen();
     let shown = |quantity, x| with_unit(&preset.units, quantity, x, false, |x| significant(x, 5));
-    let critical = critical_force(preset).filter(|_| model.axes == Axes::Reduced);
-    let force = critical.map_or_else(
-        || shown(Quantity::Force, state.force),
-        |critical| format!("{} Pc", significant(state.force / critical, 5)),
-    );
+    let force = model.force_in_words(preset, state.force, 5);
     let text = format!(
         "now on the present curve, not on pin {}: s {}, P {force}, δ {}",
         letter(number),

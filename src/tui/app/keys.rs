@@ -296,6 +296,12 @@ impl App {
                 self.enlarged = false;
                 Vec::new()
             }
+            Id::CrossHair if self.model.cross.is_none() => {
+                let here = self.place_here();
+                let effects = self.run(id.into());
+                self.model.cross = self.model.cross.map(|_| here);
+                effects
+            }
             Id::Enlarge => {
                 self.enlarged = !self.enlarged;
                 Vec::new()

@@ -63,7 +63,8 @@ fn heading(app: &App, warnings: &[String], room: u16) -> Vec<Span<'static>> {
         spans.push(Span::styled("  curve and state of other values", theme.error()));
     }
     if let Some(says) = &app.late {
-        let text = theme.text(&app.keymap.spelled(says));
+        let left = usize::from(room).saturating_sub(width(&spans) + 2);
+        let text = theme.whole_words(&theme.text(&app.keymap.spelled(says)), left);
         spans.push(Span::styled(format!("  {text}"), theme.key().add_modifier(Modifier::BOLD)));
     }
     if let Some(share) = stiffness_share(model) {
@@ -167,11 +168,25 @@ fn said(model: &Model, room: usize) -> String {
     if room < FEW { String::new() } else { text.to_owned() }
 }
 
-/// The first warning, as much of it as fits into `room`, and the key that shows the rest.
+/// The first warning, as much of it as fits into `room`, and the key that shows the rest; only their number where a word of it
+/// would say nothing.
 fn warned(keymap: &Keymap, warnings: &[String], room: usize) -> Option<String> {
+    const A_FEW_WORDS: usize = 30;
     let (first, others) = warnings.split_first()?;
+    let count = match warnings.len() {
+        1 => "warning".to_owned(),
+        count => format!("{count} warnings"),
+    };
+    let count = format!("! {count} {}: all", keymap.label(Id::Help));
     let more = if others.is_empty() { String::new() } else { format!("+{}", others.len()) };
-    Some(fitted(keymap, &format!("! {first}"), &more, room))
+    let text = format!("! {first}");
+    let is_cut = text.chars().count() > room;
+    let says = if is_cut && (count.chars().count()..A_FEW_WORDS).contains(&room) {
+        count
+    } else {
+        fitted(keymap, &text, &more, room)
+    };
+    Some(says)
 }
 
 #[cfg(test)]
@@ -187,7 +202,8 @@ mod tests {
             Some("! too coarse")
         );
         for (all, room, text) in [
-            (&["much too coarse"][..], 16, "! much... ?: all"),
+            (&["much too coarse"][..], 16, "! warning ?: all"),
+            (&["much too coarse", "sharp"], 19, "! 2 warnings ?: all"),
             (&["coarse", "sharp"], 40, "! coarse... +1 ?: all"),
             (&["coarse", "sharp"], 3, "... +1 ?: all"),
         ] {

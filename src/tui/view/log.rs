@@ -3,14 +3,14 @@
 
 use super::parts::{is_selected, panel};
 use crate::explorer::log::{EventMark, Log, LogEntry};
-use crate::explorer::{Axes, Inadmissible, Model, ScreenPanel};
+use crate::explorer::{Inadmissible, Model, ScreenPanel};
 use crate::figure::{Axis, Scale};
 use crate::tui::app::App;
 use crate::tui::keymap::Keymap;
 use crate::tui::theme::Theme;
 use pulloff_engine::problem::{Begin, Control};
 use pulloff_engine::report::PathReport;
-use pulloff_engine::report::number::{fixed, loss, significant, with_unit};
+use pulloff_engine::report::number::{fixed, loss, significant};
 use pulloff_engine::report::path::{EventReport, StateReport};
 use pulloff_engine::units::{Quantity, UnitSystem};
 use ratatui::Frame;
@@ -177,14 +177,7 @@ fn sums(model: &Model, log: &Log, room: usize) -> String {
         (0.0, false) => String::new(),
         (lost, unbounded) => format!(", {} passed by", energy(lost, unbounded)),
     };
-    let force = |force: f64| {
-        let critical = model.curve.as_ref().map_or(0.0, |curve| curve.base.critical_force);
-        if model.axes == Axes::Reduced && critical > 0.0 {
-            format!("{} Pc", significant(force / critical, 4))
-        } else {
-            with_unit(units, Quantity::Force, force, false, |x| significant(x, 4))
-        }
-    };
+    let force = |force: f64| model.force_in_words(&model.preset, force, 4);
     let pull = path.totals.pull();
     let pull = pull.map_or_else(String::new, |at| format!("A {}  ", force(at.force)));
     // Beside a pull at a rate all of these are numbers of another path.

@@ -19,6 +19,7 @@ use super::{Evidence, ROUNDING};
 use crate::elementary::pow;
 use crate::gap::Shape;
 use crate::gap::shapes::PowerLaw;
+use crate::measured::branches::median;
 use crate::measured::{Abscissa, Segment};
 use crate::preset::edge::CLOSING_ADHESION;
 use crate::problem::Groups;
@@ -36,14 +37,32 @@ pub(in crate::fit) const BRANCHES: &str = "branches";
 const MOST: f64 = 3.0;
 pub(super) const MOST_OF_NEIGHBOURS: f64 = 4.0;
 
+/// What the free values take up of `z`, as their change, and z⊥.
+fn parted(
+    Evidence { solved, inner, .. }: Evidence,
+    z: &DVector<f64>,
+) -> Option<(DVector<f64>, DVector<f64>)> {
+    let jacobian = &solved.minimum.at.jacobian;
+    let along = inner? * jacobian.tr_mul(z);
+    let across = z - jacobian * &along;
+    Some((along, across))
+}
+
+/// The typical size of the residuals that change by `z` after a change by n, in units of the noise of neighbours.
+fn rest(evidence: Evidence, z: &DVector<f64>, n: f64) -> Option<f64> {
+    let (_, across) = parted(evidence, z)?;
+    let left = &evidence.solved.minimum.at.residuals + across * n;
+    let sizes = left.iter().zip(z).filter(|(_, z)| **z != 0.0).map(|(left, _)| left.abs());
+    Some(1.4826 * median(sizes.collect())? / evidence.scatter.contact?.max(ROUNDING))
+}
+
 /// n and t of residuals that change by `z`. Rows that `alone` marks as off alone say nothing, and the noise of
 /// neighbours is then taken for all others: what these differ by apart from z is not noise.
 pub(super) fn score(evidence: Evidence, z: &DVector<f64>, alone: Option<&[bool]>) -> Option<[f64; 2]> {
-    let Evidence { problem, solved, scatter, inner } = evidence;
+    let Evidence { problem, solved, scatter, .. } = evidence;
     let s = scatter.contact?.max(ROUNDING);
     let at = &solved.minimum.at;
-    let along = inner? * at.jacobian.tr_mul(z);
-    let across = z - &at.jacobian * &along;
+    let (along, across) = parted(evidence, z)?;
     let left = z.dot(&across);
     let most = if alone.is_some() { MOST_OF_NEIGHBOURS * s } else { MOST * f64::max(s, solved.scale) };
     let mut clipped = at.residuals.map(|r| r.clamp(-most, most));
@@ -142,6 +161,8 @@ pub(super) fn of_shape(evidence: Evidence) -> Option<Reason> {
 pub(super) fn of_range(evidence: Evidence) -> Option<Reason> {
     /// The separation to which the tension reaches, over the z₀ of Tabor's number, by the usual match.
     const OF_EQUILIBRIUM: f64 = 0.97;
+    /// A law that leaves more than this many times the noise does not describe the points.
+    const WELL: f64 = 2.0;
     let Evidence { problem, solved, scatter, .. } = evidence;
     let u = &solved.minimum.parameters;
     let z = problem.changed(u, Mover::Range, |_| 1.0)?;
@@ -150,10 +171,17 @@ pub(super) fn of_range(evidence: Evidence) -> Option<Reason> {
     let reach = preset.material.work_of_adhesion * n.max(0.0).sqrt();
     let tabor = Groups::of(&preset.problem(), Some(reach / OF_EQUILIBRIUM), None).tabor?;
     (n > 0.0 && 0.5 * beyond_t(t, scatter.degrees) < FALSE_ALARM).then(|| {
+        // Waves that the preset leaves out look like a range too, but most of the misfit stays.
+        let consequence = match rest(evidence, &z, n).filter(|rest| *rest > WELL) {
+            Some(rest) => format!(
+                "But {} times the noise would be left. A gap with waves that the preset does not have looks the same",
+                short(rest, 2)
+            ),
+            None => "The JKR limit of this method does not hold".to_owned(),
+        };
         let sentence = format!(
             "adhesion with a range describes the points better than adhesion at the edge alone: it acts up \
-             to a separation of about {}, with Tabor's mu about {} ({} standard errors). The JKR limit of \
-             this method does not hold",
+             to a separation of about {}, with Tabor's mu about {} ({} standard errors). {consequence}",
             said(&preset.units, Quantity::Length, reach),
             short(tabor, 2),
             short(t, 2)
