@@ -13,7 +13,7 @@ use super::distance::Nearest;
 use super::least_squares::LeastSquares;
 use super::path::{Foot, PathPlace};
 use super::prior::Prior;
-use super::problem::{ADHESION, Datum, FitProblem, FreeParameter, Paths, START, Target};
+use super::problem::{ADHESION, Datum, FitProblem, FreeParameter, MODULUS, Paths, START, Target};
 use super::track::Mover;
 use crate::measured::{Instrument, Segment};
 use crate::preset::edge;
@@ -39,7 +39,7 @@ fn shift(target: &Target) -> Option<fn(&Datum) -> PathPlace> {
 /// What a parameter moves on a path by a closed form, and the branch if it does so on one alone.
 fn mover(target: &Target) -> Option<(Mover, Option<Segment>)> {
     match target {
-        Target::Key(key) if key == "material.effective_modulus" => Some((Mover::Modulus, None)),
+        Target::Key(key) if key == MODULUS => Some((Mover::Modulus, None)),
         Target::Key(key) if key == ADHESION => Some((Mover::Adhesion, None)),
         Target::Key(key) if key == "path.control.stiffness" => Some((Mover::Stiffness, None)),
         Target::Key(key) if key == RANGE_KEYS[0] => Some((Mover::Strength, None)),

@@ -1,6 +1,6 @@
 //! What is asked of a fit, what can be free, and why there is no fit.
 
-use super::problem::{ADHESION, Target};
+use super::problem::{ADHESION, MODULUS, Target};
 use crate::measured::Asked;
 use crate::measured::{Abscissa, BranchError};
 use crate::preset::called::key_called;
@@ -181,7 +181,7 @@ pub fn target(preset: &Preset, abscissa: Abscissa, name: &str) -> Result<Target,
     };
     let row = preset.row(&key).ok_or_else(unfit)?;
     let others = [
-        "material.effective_modulus",
+        MODULUS,
         ADHESION,
         edge::CLOSING_ADHESION,
         "path.control.stiffness",

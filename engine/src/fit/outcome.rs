@@ -3,7 +3,7 @@
 use super::fitted::Fitted;
 use super::least_squares::Ending;
 use super::options::letter;
-use super::problem::ADHESION;
+use super::problem::{ADHESION, MODULUS};
 use super::residuals::Residual;
 use super::rows::Rows;
 use super::scatter::Scatter;
@@ -96,7 +96,7 @@ impl Fit {
         let is_free = |key: &str| self.parameters.iter().any(|fitted| fitted.key.starts_with(key));
         let of_radius = self.abscissa == Abscissa::Radius;
         let has_radii = !of_radius && self.noise.sigma[2] > 0.0;
-        let depends = is_free(ADHESION) || is_free("material.effective_modulus");
+        let depends = is_free(ADHESION) || is_free(MODULUS);
         if has_radii || !depends || is_free("gap.") {
             return None;
         }

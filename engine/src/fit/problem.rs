@@ -62,6 +62,9 @@ impl Target {
 /// The key of the work of adhesion.
 pub const ADHESION: &str = "material.work_of_adhesion";
 
+/// The key of the modulus.
+pub const MODULUS: &str = "material.effective_modulus";
+
 /// The key of the contact radius at which a pull begins.
 pub const START: &str = "path.start_contact_radius";
 
@@ -219,7 +222,7 @@ impl FitProblem {
             let value = parameter.value(*u);
             // Those that need no check across keys.
             match key {
-                "material.effective_modulus" if value.is_normal() => {
+                MODULUS if value.is_normal() => {
                     preset.material.effective_modulus = value;
                 }
                 ADHESION if value.is_finite() => preset.material.work_of_adhesion = value,

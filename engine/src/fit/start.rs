@@ -4,7 +4,7 @@
 //! median offset. Other free keys are tried at a few multiples of their values.
 
 use super::least_squares::{LeastSquares, cost};
-use super::problem::{ADHESION, Datum, FitProblem, START, Target};
+use super::problem::{ADHESION, Datum, FitProblem, MODULUS, START, Target};
 use super::pulled::is_pulled;
 use super::solve::{HUBER, solve};
 use super::track::begins;
@@ -91,6 +91,7 @@ impl FitProblem {
     /// The end that is reached from `u`; `u` itself where nothing is.
     fn end_from(&self, u: Vec<f64>, robust: bool, progress: &dyn Progress) -> Option<FitEnd> {
         let solved = solve(self, &u, robust, ROUNDS, progress).map(|solved| solved.minimum.parameters);
+        let solved = solved.filter(|end| !self.runs_away(&u, end));
         let of = |u: Vec<f64>| {
             let residuals = self.residuals(&u)?;
             let (scale, distance) = (self.scale(&residuals), self.distance(&u)?);
@@ -98,6 +99,13 @@ impl FitProblem {
             Some(FitEnd { u, residuals, scale, distance, is_late })
         };
         solved.and_then(of).or_else(|| of(u))
+    }
+
+    /// Whether E* changes on the way from `u` to `end` by far more than the scan of starts spans: then rounding alone makes the
+    /// path go through the points.
+    fn runs_away(&self, u: &[f64], end: &[f64]) -> bool {
+        const FAR: f64 = 2.0 * DECADES * std::f64::consts::LN_10;
+        self.index(|target| target.key() == MODULUS).into_iter().any(|j| (u[j] - end[j]).abs() > FAR)
     }
 
     /// The mean distance at `u`.
@@ -111,8 +119,8 @@ impl FitProblem {
         (0..self.parameters.len()).filter(|j| is(&self.parameters[*j].target)).collect()
     }
 
-    /// Sets γ so that the smallest force is that of the points, and δ₀ to their median offset; on waves, where several
-    /// states have the same force, also to that of the pull-off.
+    /// Sets γ so that the smallest force is that of the points, and δ₀ to their median offset; where several states have the
+    /// same force, on waves and if all of it is tension, also to that of the pull-off.
     fn settled(&self, mut u: Vec<f64>, least: f64) -> Option<Vec<Vec<f64>>> {
         const TIMES: usize = 6;
         let adhesions =
@@ -144,9 +152,12 @@ impl FitProblem {
             let last = of_retraction.map(|datum| datum.point.x).fold(f64::INFINITY, f64::min);
             let ends = paths.of(Segment::Retraction).vertices.iter().map(|vertex| vertex.at[0]);
             let pull_off = last - ends.fold(f64::INFINITY, f64::min);
-            let has_waves = self.preset.gap.feature_length().is_some();
-            let found =
-                median(offsets).into_iter().chain(Some(pull_off).filter(|x| has_waves && x.is_finite()));
+            let attached = self.data.iter().filter(|datum| !datum.free);
+            let most =
+                attached.map(|datum| datum.point.force - at.baseline).fold(f64::NEG_INFINITY, f64::max);
+            let is_ambiguous = self.preset.gap.feature_length().is_some() || most < 0.0;
+            let pull_off = Some(pull_off).filter(|x| is_ambiguous && x.is_finite());
+            let found = median(offsets).into_iter().chain(pull_off);
             let with = |offset| {
                 let mut u = u.clone();
                 u[j] = self.parameters[j].inner(Target::Offset.sign(self.turned) * offset);
@@ -218,9 +229,8 @@ impl FitProblem {
         for &j in &free {
             base.insert(j, own[j]);
         }
-        let [modulus, speed, exponent] =
-            ["material.effective_modulus", edge::REFERENCE_SPEED, edge::EXPONENT]
-                .map(|key| self.index(|target| target.key() == key).first().copied());
+        let [modulus, speed, exponent] = [MODULUS, edge::REFERENCE_SPEED, edge::EXPONENT]
+            .map(|key| self.index(|target| target.key() == key).first().copied());
         // The rate of a force is not a speed: there the guess of the preset takes its place.
         let is_force = self.preset.path.control == Control::Force;
         let unit = self.preset.edge.rate.filter(|_| !is_force).or(self.preset.edge.reference_speed)?;
@@ -287,7 +297,7 @@ impl FitProblem {
     fn left(&self, mut best: FitEnd, robust: bool, progress: &dyn Progress) -> FitEnd {
         /// How often, while that leads anywhere.
         const TIMES: usize = 3;
-        const KEYS: [&str; 3] = ["material.effective_modulus", edge::REFERENCE_SPEED, START];
+        const KEYS: [&str; 3] = [MODULUS, edge::REFERENCE_SPEED, START];
         const FACTORS: [[f64; 2]; 3] = [[0.7, 1.4], [0.1, 10.0], [0.7, 1.4]];
         for _ in 0..TIMES {
             let (before, from) = (best.distance, best.u.clone());
@@ -329,9 +339,9 @@ impl FitProblem {
         if !scan {
             return list;
         }
-        let modulus = self.index(|t| *t == Target::Key("material.effective_modulus".to_owned()));
+        let modulus = self.index(|t| *t == Target::Key(MODULUS.to_owned()));
         // Where an edge is pinned follows from the other values.
-        let is_other = |key: &str| key != ADHESION && key != "material.effective_modulus" && key != START;
+        let is_other = |key: &str| key != ADHESION && key != MODULUS && key != START;
         let others = self.index(|t| matches!(t, Target::Key(key) if is_other(key)));
         let closing = self.index(|t| *t == Target::Adhesion(Segment::Approach));
         let mut grid = vec![own];

@@ -13,13 +13,15 @@ use super::noise::{FLOOR, median, range, scatter_over};
 /// A jump is at least this many deviations of its own noise.
 const SURE: f64 = 6.0;
 /// The fewest rows on either side, and the fewest behind the jump when there are few rows in all.
-const FEWEST: usize = 3;
+pub(super) const FEWEST: usize = 3;
 const BEHIND: usize = 2;
-const FEW: usize = 40;
+pub(super) const FEW: usize = 40;
 /// A jump is at least this many times the scatter behind it, and the force behind it changes by at most this share of
 /// the jump.
 const CLEAR: f64 = 3.0;
 const GOES_ON: f64 = 0.5;
+/// Changes below this share of a jump do not tell which side of it is in contact.
+const ALIKE: f64 = 0.1;
 /// Rows that are off by this many σ from the median of five, and by this many times the range of the other four, are
 /// set to that median. A force that falls and jumps within a few rows has no outliers.
 const OFF: f64 = 5.0;
@@ -49,10 +51,15 @@ pub(super) fn jump(x: &[f64], force: &[f64]) -> Option<RowJump> {
     if n < 2 * FEWEST {
         return None;
     }
-    let Some(mut found) = of_many(x, force) else { return if n < SPARSE { of_few(force) } else { None } };
+    // A last row or two may lie behind another jump, and would lift the mean of rows that are in contact.
+    let single = (1..=BEHIND).rev().filter(|rows| n >= FEW || *rows < BEHIND);
+    let kept = n - single.into_iter().find(|rows| may_be_behind(x, force, *rows)).unwrap_or(0);
+    let Some(mut found) = of_many(&x[..kept], &force[..kept]) else {
+        return if n < SPARSE { of_few(force) } else { None };
+    };
     // On waves the highest jump may not be the last one: the bodies are apart behind that.
-    while n - found.at >= SPARSE {
-        let next = of_many(&x[found.at..], &force[found.at..])
+    while kept - found.at >= SPARSE {
+        let next = of_many(&x[found.at..kept], &force[found.at..kept])
             .map(|next| RowJump { at: found.at + next.at, ..next });
         let Some(next) = next.filter(|next| is_contact(x, force, [found.at, next.at])) else { break };
         found = next;
@@ -164,8 +171,12 @@ fn is_flat(x: &[f64], force: &[f64], at: usize, height: f64, w: usize) -> bool {
     // The force must change less than in contact, which begins at the larger x; otherwise the rows apart are the ones
     // before.
     let (near, far) = before.split_at(before.len() / 2);
-    let goes_less = (p1 - p0).abs() <= (of(near) - of(far)).abs();
-    goes_less && (p1 - p0).abs().max(over_rows) <= GOES_ON * height && CLEAR * scatter <= height
+    let [changes, changed] = [(p1 - p0).abs(), (of(near) - of(far)).abs()];
+    // Where a dead load nears the pull-off, the force hardly changes in contact either: apart is where there is less of it.
+    let is_alike = changes.max(changed) <= ALIKE * height && of(rest).abs() < of(before).abs();
+    (changes <= changed || is_alike)
+        && (p1 - p0).abs().max(over_rows) <= GOES_ON * height
+        && CLEAR * scatter <= height
 }
 
 /// The values, with rows that differ from their neighbours by more than `limit` replaced.

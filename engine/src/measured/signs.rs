@@ -1,7 +1,7 @@
 //! The signs of x and P: from contact radii, the names of the branches, the jump behind which the bodies are apart, or
 //! the end at which the force stays constant.
 
-use super::apart::jump;
+use super::apart::{FEW, FEWEST, jump};
 use super::asked::{FreePart, ValueRange};
 use super::ends::{free_end, rests, still_end};
 use super::noise::{BEYOND, END_ROWS, END_SHARE, FLOOR, median, noise_of, range, scatter_over};
@@ -200,6 +200,7 @@ fn by_jumps(
             let (x, force): (Vec<f64>, Vec<f64>) = piece.iter().map(|point| (point.x, point.force)).unzip();
             // Where most rows are apart, the outer fifth of all would hold more of them than of the contact.
             let found = jump(&x, &force)
+                .filter(|jump| jump.at >= if force.len() < FEW { FEWEST } else { 2 * FEWEST })
                 .filter(|jump| rises(&x[..jump.at], &force[..jump.at]) == Some(true))
                 .filter(|jump| may_rest || !rests(&middle(&x[jump.at..]), &x));
             sum += found.map_or(0.0, |jump| jump.deviations);
@@ -273,6 +274,8 @@ pub(super) fn is_swapped(points: &[MeasuredPoint]) -> bool {
     const GOES_ON: f64 = 0.02;
     /// So many standard deviations of a row, over the root of the rows of a half.
     const CERTAIN: f64 = 8.0;
+    /// A change by less than this share of the range is none, however small the noise is.
+    const NONE: f64 = 0.002;
     let (x, force): (Vec<f64>, Vec<f64>) = points.iter().map(|point| (point.x, point.force)).unzip();
     let count = (x.len() / ROWS).max(END_ROWS).min(x.len());
     let share = |of: &[f64], rows: std::ops::Range<usize>| {
@@ -282,11 +285,15 @@ pub(super) fn is_swapped(points: &[MeasuredPoint]) -> bool {
     };
     // Among few rows two medians of noise may be as far apart.
     let rows: Vec<f64> = (0..x.len()).map(|row| row as f64).collect();
-    let noise = scatter_over(&rows, &force).unwrap_or(0.0) / range(force.iter().copied());
-    let goes_on = GOES_ON.max(CERTAIN * noise / ((count / 2) as f64).sqrt());
+    let [still, goes_on] = [&x, &force].map(|of| {
+        let noise = scatter_over(&rows, of).unwrap_or(0.0) / range(of.iter().copied());
+        CERTAIN * noise / ((count / 2) as f64).sqrt()
+    });
+    // Beside the long way after a jump even what goes on in contact is a small share of x.
+    let (still, goes_on) = (still.clamp(NONE, STILL), goes_on.max(GOES_ON));
     [0..count, x.len() - count..x.len()]
         .into_iter()
-        .any(|rows| share(&x, rows.clone()) < STILL && share(&force, rows) > goes_on)
+        .any(|rows| share(&x, rows.clone()) < still && share(&force, rows) > goes_on)
 }
 
 /// Whether P rises with x in the outer fifth of x; `None` if it neither rises nor falls.

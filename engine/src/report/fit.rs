@@ -11,6 +11,7 @@ use crate::fit::least_squares::Ending;
 use crate::fit::models::{AdhesionModel, Models, Pair};
 use crate::fit::options::letter;
 use crate::fit::outcome::Fit;
+use crate::fit::problem::MODULUS;
 use crate::fit::together::{Collapse, Together};
 use crate::fit::uncertain::Given;
 use crate::fit::{Reason, Rows, Verdict};
@@ -21,9 +22,6 @@ use crate::preset::Preset;
 use crate::units::{Quantity, UnitSystem};
 use serde::Serialize;
 use std::fmt::Write;
-
-/// The key of E*.
-const MODULUS: &str = "material.effective_modulus";
 
 /// A fit, in base units: SI, or those of a reduced problem.
 #[derive(Debug, Clone, PartialEq, Serialize)]

@@ -349,7 +349,7 @@ impl PullReport {
             settings: PullSettings::default(),
         };
         let programmes = programmes(preset, asked)?;
-        let mut warnings = case.warnings_of_problem(case.start);
+        let (mut warnings, mut widest) = (Vec::new(), case.start);
         if preset.basis != BasisSpec::Exact {
             warnings.push(EXACT.to_owned());
         }
@@ -360,6 +360,7 @@ impl PullReport {
                 parts.iter().map(|part| part.in_units(1.0 / factors.control, 1.0 / factors.time())).collect();
             let part = progress::ProgressPart::new(progress, [k as f64 / count, (k + 1) as f64 / count]);
             let pull = puller.pull(&parts, &part).map_err(|error| refused(error, &case))?;
+            widest = pull.moments.iter().map(|moment| moment.contact_radius).fold(widest, f64::max);
             let overlaps_at = factors.overlap_at_start(&case, pull.start.approach, progress);
             warnings.extend(overlaps_at.map(|r| factors.warning_of_start(&case, r)));
             warnings.extend(factors.limits(preset, &case, rate.as_ref(), &pull, progress));
@@ -373,6 +374,7 @@ impl PullReport {
             runs.push(factors.run(*rate, &pull, (case.control, overlaps_at)));
         }
         let failures = factors.failures(&case, &edge, &asked.loads, (&mut warnings, progress))?;
+        warnings.splice(0..0, case.warnings_of_problem(widest));
         // What holds for all pulls is said once.
         let mut said = BTreeSet::new();
         warnings.retain(|warning| said.insert(warning.clone()));
