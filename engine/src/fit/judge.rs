@@ -271,6 +271,7 @@ pub(super) fn doubts(
             ));
         }
     }
+    doubts.extend(apart::of_ends(problem, solved));
     doubts.extend(unknown(problem, fitted));
     doubts.extend(wide(problem, &solved.minimum.parameters));
     let free = problem.data.iter().filter(|datum| datum.free).count().max(1) as f64;

@@ -11,6 +11,8 @@ use super::turns::{one_way, runs};
 
 /// Jumps of this share of the clearest one are as likely.
 const LIKELY: f64 = 0.5;
+/// With so few rows in contact of many there is nothing to fit: what looks like them are rows apart, seen backwards.
+const IN_CONTACT: usize = 10;
 /// Jumps to rows that go on count alone if they have this share of the clearest of all.
 const CLEAR: f64 = 0.25;
 /// The notes for a reversed sign of the force.
@@ -200,7 +202,7 @@ fn by_jumps(
             let (x, force): (Vec<f64>, Vec<f64>) = piece.iter().map(|point| (point.x, point.force)).unzip();
             // Where most rows are apart, the outer fifth of all would hold more of them than of the contact.
             let found = jump(&x, &force)
-                .filter(|jump| jump.at >= if force.len() < FEW { FEWEST } else { 2 * FEWEST })
+                .filter(|jump| jump.at >= if force.len() < FEW { FEWEST } else { IN_CONTACT })
                 .filter(|jump| rises(&x[..jump.at], &force[..jump.at]) == Some(true))
                 .filter(|jump| may_rest || !rests(&middle(&x[jump.at..]), &x));
             sum += found.map_or(0.0, |jump| jump.deviations);

@@ -60,6 +60,38 @@ pub(super) fn of_contact(problem: &FitProblem, solved: &SolvedFit) -> Option<Rea
     })
 }
 
+/// A sentence on rows at the ends of the parts of a branch that are so far off that they may show what the others do not: a jump
+/// in the last row, or rows that are taken to be apart though they are not.
+pub(super) fn of_ends(problem: &FitProblem, solved: &SolvedFit) -> Option<String> {
+    /// How far, in σ, and how many rows are at an end.
+    const FAR: f64 = 30.0;
+    const AT_END: usize = 2;
+    let far = FAR * solved.scale.max(1.0);
+    let parts = (0..problem.branches()).flat_map(|branch| [false, true].map(|free| (branch, free)));
+    let off: Vec<_> = parts
+        .flat_map(|(branch, free)| {
+            let rows = problem.in_order(solved, branch, free, 0);
+            let inner = AT_END..rows.len().saturating_sub(AT_END);
+            rows.into_iter().enumerate().filter(move |(i, _)| !inner.contains(i)).map(|(_, row)| row)
+        })
+        .filter(|row| row.residual.abs() > far)
+        .collect();
+    let most = off.iter().map(|row| row.residual.abs()).reduce(f64::max)?;
+    let mut numbers: Vec<usize> = off.iter().map(|row| problem.data[row.index].point.row).collect();
+    numbers.sort_unstable();
+    let numbers: Vec<String> = numbers.iter().map(ToString::to_string).collect();
+    let [rows, lie, count] = if numbers.len() > 1 {
+        ["rows", "lie", "count as outliers: if they are"]
+    } else {
+        ["row", "lies", "counts as an outlier: if it is"]
+    };
+    Some(format!(
+        "{rows} {} at the end of a part of the points {lie} up to {} sigma from the model and {count} right, the values are wrong",
+        numbers.join(", "),
+        short(most, 2)
+    ))
+}
+
 /// Forces that differ between the branches.
 fn levels(problem: &FitProblem, solved: &SolvedFit, tau: f64) -> Option<Reason> {
     let mut means: Vec<[f64; 3]> = Vec::new();
