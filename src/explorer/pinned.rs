@@ -60,7 +60,7 @@ impl Background for PinCurve {
             }
             Some(elements) => {
                 let which = format!("pin {}, {} ring elements", letter(*number), elements.count);
-                let said = elements.said(&which, ["largest pull off by", " of it", "Newton iterations"]);
+                let said = elements.said(&which, ["largest pull off by", "Newton iterations"]);
                 model.tell(Level::Info, said);
             }
             None => {}

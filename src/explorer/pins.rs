@@ -79,11 +79,10 @@ impl Elements {
         Some(Self { count, off: own.force / at.force - 1.0, iterations })
     }
 
-    /// In words: `which` of the two, and what stands before and behind the share by which it is off, and behind the number of
-    /// iterations.
-    pub fn said(&self, which: &str, [off, of, iterations]: [&str; 3]) -> String {
+    /// In words: `which` of the two, and the labels for off and iterations.
+    pub fn said(&self, which: &str, [off, iterations]: [&str; 2]) -> String {
         let found = self.iterations.map_or(String::new(), |count| format!(", {count} {iterations}"));
-        format!("{which}: {off} {}{of}{found}", difference(self.off))
+        format!("{which}: {off} {} %{found}", difference(100.0 * self.off))
     }
 }
 
@@ -110,7 +109,7 @@ impl Pin {
             BasisSpec::Rings { rings, .. } => format!("rings {rings}"),
             BasisSpec::Exact => "exact".to_owned(),
         };
-        elements.said(&which, ["A", "", "Newton"])
+        elements.said(&which, ["A", "Newton"])
     }
 }
 

@@ -320,12 +320,19 @@ fn outermost(
 ) -> Option<f64> {
     const FIRST: f64 = 1e-7;
     const GROWTH: f64 = 1.5;
+    /// Where the gap is this many ranges of x high, the contact has nothing to do with the points: its modulus is far too small,
+    /// and its table goes over thousands of waves.
+    const FAR: f64 = 1e3;
     let largest = reduced.largest_contact();
+    let highest = FAR * reach.length / eye.units.length;
     let mut s = FIRST;
     let mut before = [f64::INFINITY; 2];
     for _ in 0..120 {
         if s >= largest {
             return Some(largest);
+        }
+        if reduced.gap.jet(s).value > highest {
+            return None;
         }
         let at = basis.equilibrium(reduced, s)?;
         let state = [s, at.approach, at.force];

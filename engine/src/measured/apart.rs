@@ -14,7 +14,7 @@ use super::noise::{FLOOR, median, range, scatter_over};
 const SURE: f64 = 6.0;
 /// The fewest rows on either side, and the fewest behind the jump when there are few rows in all.
 pub(super) const FEWEST: usize = 3;
-const BEHIND: usize = 2;
+pub(super) const BEHIND: usize = 2;
 pub(super) const FEW: usize = 40;
 /// A jump is at least this many times the scatter behind it, and the force behind it changes by at most this share of
 /// the jump.
@@ -51,9 +51,8 @@ pub(super) fn jump(x: &[f64], force: &[f64]) -> Option<RowJump> {
     if n < 2 * FEWEST {
         return None;
     }
-    // A last row or two may lie behind another jump, and would lift the mean of rows that are in contact.
-    let single = (1..=BEHIND).rev().filter(|rows| n >= FEW || *rows < BEHIND);
-    let kept = n - single.into_iter().find(|rows| may_be_behind(x, force, *rows)).unwrap_or(0);
+    // They would lift the mean of the last rows in contact.
+    let kept = n - Some(fallen(x, force)).filter(|rows| n >= FEW || *rows < BEHIND).unwrap_or(0);
     let Some(mut found) = of_many(&x[..kept], &force[..kept]) else {
         return if n < SPARSE { of_few(force) } else { None };
     };
@@ -86,6 +85,22 @@ pub(super) fn may_be_behind(x: &[f64], force: &[f64], rows: usize) -> bool {
         && height > OF_PULL * (level - lowest)
         && before[at - 1] - before[at - 2] < BEFORE * height
         && range(behind.iter().copied()) < AFTER * height
+}
+
+/// How many of the last rows, at most two, are behind a jump of both force and x: where a dead load comes off, the force is all but
+/// constant before it.
+pub(super) fn fallen(x: &[f64], force: &[f64]) -> usize {
+    /// A jump in x, in steps of the rows before it, and how many of these count.
+    const STEPS: f64 = 5.0;
+    const BEFORE: usize = 8;
+    let is_fallen = |rows: &usize| {
+        may_be_behind(x, force, *rows) && {
+            let at = x.len() - rows;
+            let step = range(x[at - BEFORE..at].iter().copied()) / (BEFORE - 1) as f64;
+            x[at - 1] - x[at] > STEPS * step
+        }
+    };
+    (1..=BEHIND).rev().find(is_fallen).unwrap_or(0)
 }
 
 /// Whether the bodies are in contact between two jumps: the force has a slope as before the first of them. Bridges between

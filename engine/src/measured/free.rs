@@ -1,14 +1,11 @@
 //! A branch divided into its parts: the rows in contact, those within the jump, and those apart.
 
-use super::apart::{SPARSE, jump, may_be_behind};
+use super::apart::{BEHIND, SPARSE, fallen, jump, may_be_behind};
 use super::asked::{FreePart, ValueRange};
 use super::ends::{filtered, free_end, stands_still};
 use super::noise::{BEYOND, END_ROWS, END_SHARE, FLOOR, Noise, median, noise_of, range};
 use super::points::MeasuredPoint;
 use super::role::Segment;
-
-/// More rows than this behind a jump show it.
-const FEW_BEHIND: usize = 2;
 
 /// One branch, from the contact to the free end.
 #[derive(Debug, Clone, PartialEq)]
@@ -33,8 +30,7 @@ impl MeasuredBranch {
     pub(super) fn drops_last(&mut self) -> Vec<usize> {
         let (x, force): (Vec<f64>, Vec<f64>) =
             self.attached.iter().map(|point| (point.x, point.force)).unzip();
-        let behind =
-            (1..=FEW_BEHIND).rev().find(|rows| self.free.is_empty() && may_be_behind(&x, &force, *rows));
+        let behind = (1..=BEHIND).rev().find(|rows| self.free.is_empty() && may_be_behind(&x, &force, *rows));
         let dropped = self.attached.split_off(self.attached.len() - behind.unwrap_or(0));
         self.jump += dropped.len();
         dropped.iter().map(|point| point.row).collect()
@@ -130,7 +126,7 @@ pub(super) fn branch(
     let is_apart = points.len() >= 2 * END_ROWS
         && free_end(&x, &force)[0]
         && stands_still(&force)
-        && !(segment == Segment::Retraction && falls_away(&x, &force));
+        && !(segment == Segment::Retraction && fallen(&x, &force) > 0);
     if !is_apart {
         return MeasuredBranch { segment, attached: points, free: Vec::new(), jump: 0 };
     }
@@ -150,21 +146,6 @@ pub(super) fn branch(
     }
     let free = points.split_off((at + off).min(points.len()));
     MeasuredBranch { segment, attached: points, free, jump: 0 }
-}
-
-/// Whether the last row or two are behind a jump of both force and x: where a dead load comes off, the force is all but constant
-/// before it.
-fn falls_away(x: &[f64], force: &[f64]) -> bool {
-    /// A jump in x, in steps of the rows before it, and how many of these count.
-    const STEPS: f64 = 5.0;
-    const BEFORE: usize = 8;
-    (1..=FEW_BEHIND).any(|rows| {
-        may_be_behind(x, force, rows) && {
-            let at = x.len() - rows;
-            let step = range(x[at - BEFORE..at].iter().copied()) / (BEFORE - 1) as f64;
-            x[at - 1] - x[at] > STEPS * step
-        }
-    })
 }
 
 /// How many rows at the beginning of `rest`, which follows a jump, have not yet reached the force of the rows `free`.

@@ -180,7 +180,7 @@ fn warned(keymap: &Keymap, warnings: &[String], room: usize) -> Option<String> {
     let count = format!("! {count} {}: all", keymap.label(Id::Help));
     let more = if others.is_empty() { String::new() } else { format!("+{}", others.len()) };
     let text = format!("! {first}");
-    let is_cut = text.chars().count() > room;
+    let is_cut = text.chars().count() > room || !others.is_empty();
     let says = if is_cut && (count.chars().count()..A_FEW_WORDS).contains(&room) {
         count
     } else {
