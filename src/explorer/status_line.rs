@@ -175,7 +175,7 @@ fn standing(model: &Model, node: &Node, control: Control) -> String {
         }
         (true, NodeKind::Start) => {
             let help = Id::Help.named();
-            format!("Start, stable under {held} control. {next} runs to the first event, {help} shows help")
+            format!("Start, stable under {held} control. {next} runs to the first event, {help} helps")
         }
         (true, NodeKind::Solved) if model.is_at_start() && !keeps_control(model, node, control) => {
             format!("No state of the new path has the value held: now at its start; {next} runs on")
@@ -243,7 +243,7 @@ fn happened(model: &Model, node: &Node) -> Option<String> {
                     false => format!("{next} runs outward to the next event"),
                 };
                 let undo = Id::Undo.named();
-                format!("Landed{}, stable again. {goes_on}, {undo} takes it back", lost.unwrap_or_default())
+                format!("Landed{}, stable again. {goes_on}, {undo} undoes", lost.unwrap_or_default())
             }
         });
     }

@@ -130,7 +130,6 @@ fn ranges_steps_and_rows() {
     assert!(text.lines().count() > 100);
 }
 
-/// The snap after the largest pull is the fastest.
 /// A crater beside the disc at the start: there the bodies overlap by 0.0249, by another program.
 #[test]
 fn a_start_outside_which_the_bodies_overlap_is_told_once() {
@@ -157,6 +156,21 @@ fn a_start_outside_which_the_bodies_overlap_is_told_once() {
     assert!(told(&document(&all)) == 1);
 }
 
+/// What is beyond the theory is told of all of the way, not only of its start.
+#[test]
+fn a_programme_that_grows_beyond_the_radius_of_curvature_is_told() {
+    let steps = "path.steps=to 5 at 0.01; apart at 1";
+    let found = document(&["fig-9", "--set", "edge.exponent=1", "--set", steps]);
+    let told = found["warnings"].to_string();
+    assert!(
+        told.contains("the gap has slopes up to 2.") && told.contains("beyond the radius of curvature"),
+        "{told}"
+    );
+    let found = document(&["fig-9", "--set", "edge.exponent=1", "--rate", "1"]);
+    assert!(!found["warnings"].to_string().contains("beyond the radius of curvature"), "{found}");
+}
+
+/// The snap after the largest pull is the fastest.
 #[test]
 fn a_snap_beyond_the_range_of_the_law_is_told() {
     let set = ["--set", "edge.highest_ratio=2", "--rate", "0.01"];

@@ -15,7 +15,7 @@ fn bind(screen: &mut Screen, keys: &str) {
 #[test]
 fn sentences_name_the_keys_of_a_person() {
     let mut screen = Screen::new("wavy-sphere");
-    assert!(screen.text(100, 30).contains("n runs to the first event, ? shows help"));
+    assert!(screen.text(100, 30).contains("n runs to the first event, ? helps"));
     bind(
         &mut screen,
         "next-event = \"F2\"\nstep = \"F3\"\nundo = \"F4\"\njump = \"J\"\nhelp = \"F5\"\nrestart = \"F6\"\n\
@@ -26,7 +26,7 @@ fn sentences_name_the_keys_of_a_person() {
         assert!(shown.contains(text), "{text}: {shown}");
         assert!(!shown.contains('\u{1}'), "{shown}");
     };
-    says(&screen, "F2 runs to the first event, F5 shows help");
+    says(&screen, "F2 runs to the first event, F5 helps");
     says(&screen, "A         0.0025 ( )");
     screen.keys("f");
     says(&screen, "that key does nothing here; F5 shows all keys");
@@ -34,7 +34,7 @@ fn sentences_name_the_keys_of_a_person() {
     says(&screen, ": F2 or J lets the edge snap to");
     says(&screen, "F3 goes on, unstable");
     screen.keys("J");
-    says(&screen, "F2 runs inward to the next event, F4 takes it back");
+    says(&screen, "F2 runs inward to the next event, F4 undoes");
     screen.press(KeyCode::F(9));
     says(&screen, ":pins removes it");
     screen.press(KeyCode::F(5));

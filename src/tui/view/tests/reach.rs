@@ -512,6 +512,19 @@ fn the_cross_hair_on_a_map_counts_the_snaps() {
     }
 }
 
+/// So that what is changed from there on is only what the arrows change.
+#[test]
+fn the_cross_hair_begins_at_the_present_values() {
+    let mut screen = Screen::new("wavy-sphere");
+    screen.keys(":map A=0..0.005 gap.wavelength=0.02..0.1\ri");
+    let bounds = crate::figure::Subject::of(&screen.app.model).unwrap().figure(View::Map).bounds;
+    let (a, wavelength) = bounds.at(screen.app.model.cross.unwrap());
+    assert!((a - 0.0025).abs() < 1e-12 && (wavelength - 0.05).abs() < 1e-12, "{a} {wavelength}");
+    screen.press(KeyCode::Enter);
+    let key = "gap.wavelength";
+    assert!((screen.app.model.preset.get(key).unwrap().as_number().unwrap() - 0.05).abs() < 1e-9);
+}
+
 #[test]
 fn the_axes_of_a_map_take_ranges() {
     let mut screen = Screen::new("wavy-sphere");
