@@ -195,7 +195,7 @@ fn banded(works: [f64; 2], top: f64, n: usize) -> (Points, f64) {
 #[test]
 fn an_edge_is_pinned_on_waves_between_two_works_of_adhesion() {
     let free = [E, W, CLOSING_ADHESION].map(str::to_owned).to_vec();
-    let options = Options { free, ..Options::default() };
+    let options = Options { free, ..Options::default() }.without_intervals();
     for top in [0.09, 0.12] {
         let (mut points, radius) = banded([0.002, 0.004], top, 300);
         let mut noise = Normal::new(7);
@@ -212,7 +212,7 @@ fn a_row_that_changes_its_side_of_a_snap_keeps_no_value_off() {
     let mut noise = Normal::new(7);
     points.force.iter_mut().for_each(|force| *force += 3e-5 * noise.next());
     let free = [E, W, CLOSING_ADHESION].map(str::to_owned).to_vec();
-    let options = Options { free, ..Options::default() };
+    let options = Options { free, ..Options::default() }.without_intervals();
     let found = fit(&preset(WAVES, 1.2, 0.0013, ""), &points, &options, &Unwatched).unwrap();
     for (fitted, truth) in found.parameters.iter().zip([1.0, 0.004, 0.001]) {
         let error = fitted.standard_error.unwrap();
