@@ -147,7 +147,7 @@ fn a_start_outside_which_the_bodies_overlap_is_told_once() {
     let found = dip(0.12);
     assert_eq!(told(&found), 1, "{}", found["warnings"]);
     let at = found["runs"][1]["overlaps_at"].as_f64().unwrap();
-    assert!((at - 0.494716).abs() < 1e-5, "{at}");
+    assert!((at - 0.494_716).abs() < 1e-5, "{at}");
     let found = dip(0.01);
     assert!(told(&found) == 0 && found["runs"][0]["overlaps_at"].is_null(), "{}", found["warnings"]);
     let set = ["gap.formula=r^2/2-0.12*exp(-((r-0.5)/0.05)^2)", "gamma=0.002", "start_contact_radius=0.3"];

@@ -166,14 +166,14 @@ pub fn target(preset: &Preset, abscissa: Abscissa, name: &str) -> Result<Target,
         TILT | "tilt" => return Ok(Target::Tilt),
         _ => {}
     }
-    let key = key_called(preset, name).map_err(|invalid| match invalid {
-        Invalid::Several { keys, .. } => refused(format!("is short for several: {keys}")),
-        _ => {
-            let rows: Vec<Row> = preset.rows().collect();
-            let applies = |row: &&Row| row.fits(CHOOSERS[0], preset.gap.name());
-            let known = rows.iter().filter(applies).map(|row| (&*row.key, &*row.label));
-            refused(format!("is not a key of this preset{}", of_unknown(closest_key(name, known))))
+    let key = key_called(preset, name).map_err(|invalid| {
+        if let Invalid::Several { keys, .. } = invalid {
+            return refused(format!("is short for several: {keys}"));
         }
+        let rows: Vec<Row> = preset.rows().collect();
+        let applies = |row: &&Row| row.fits(CHOOSERS[0], preset.gap.name());
+        let known = rows.iter().filter(applies).map(|row| (&*row.key, &*row.label));
+        refused(format!("is not a key of this preset{}", of_unknown(closest_key(name, known))))
     })?;
     let unfit = || {
         let why = "is not a positive number of the bodies, gap, adhesion or spring; only those can be fitted";
