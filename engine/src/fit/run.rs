@@ -102,13 +102,11 @@ impl<'a> Posed<'a> {
     /// Whether the zero of the force lies high above zero, where no rows show it. Rows apart that count as contact lift it by a
     /// third of the largest pull: the jump under fixed grips then looks like the last rise of a contact.
     fn is_lifted(&self) -> bool {
-        /// In standard deviations of a tare, and as a share of the largest pull.
-        const FAR: f64 = 3.0;
+        /// As a share of the largest pull. A tare is a share of the largest force, which may be a hundred times as large.
         const LIFTED: f64 = 0.25;
         let baseline = self.problem.instrument_at(&self.solved.minimum.parameters).baseline;
         let forces = self.branches.list.iter().flat_map(|branch| &branch.attached).map(|point| point.force);
-        let pull = baseline - forces.fold(f64::INFINITY, f64::min);
-        baseline > FAR * self.branches.tare() && baseline > LIFTED * pull
+        baseline > LIFTED * (baseline - forces.fold(f64::INFINITY, f64::min))
     }
 
     /// The same, with all rows that `branches` have.

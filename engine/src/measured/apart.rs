@@ -70,10 +70,10 @@ pub(super) fn jump(x: &[f64], force: &[f64]) -> Option<RowJump> {
 /// it and than the change behind it. Where a record ends at its last contact, the force rises as a square root: its last
 /// two rises are as 0.41 to 1.
 pub(super) fn may_be_behind(x: &[f64], force: &[f64], rows: usize) -> bool {
-    /// A jump is this share of how far the force was below the rows behind it. The rise before it and the change behind it are at
-    /// most these shares of the jump.
+    /// A jump is this share of how far the force was below the rows behind it. The rise before it, for one row and for more, and the
+    /// change behind it are at most these shares of the jump: behind a rise as high as that before it a contact goes on rising.
     const OF_PULL: f64 = 0.25;
-    const BEFORE: f64 = 0.75;
+    const BEFORE: [f64; 2] = [0.9, 1.25];
     const AFTER: f64 = 0.25;
     let Some(at) = force.len().checked_sub(rows).filter(|at| *at >= SPARSE) else { return false };
     let (before, behind) = force.split_at(at);
@@ -83,7 +83,7 @@ pub(super) fn may_be_behind(x: &[f64], force: &[f64], rows: usize) -> bool {
     let height = level - before[at - 1];
     height > SURE * sigma * (1.0 + 1.0 / rows as f64).sqrt()
         && height > OF_PULL * (level - lowest)
-        && before[at - 1] - before[at - 2] < BEFORE * height
+        && before[at - 1] - before[at - 2] < BEFORE[usize::from(rows > 1)] * height
         && range(behind.iter().copied()) < AFTER * height
 }
 

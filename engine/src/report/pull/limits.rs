@@ -1,6 +1,7 @@
 //! Where a pull leaves the range in which its numbers hold.
 
 use super::super::number::significant;
+use super::super::table::ascii_unit;
 use super::text::shown;
 use super::{Factors, RELAXED};
 use crate::case::Case;
@@ -105,8 +106,9 @@ impl Factors {
     }
 
     pub(super) fn warning_of_start(&self, case: &Case, overlap: f64) -> String {
-        let [start, overlap] =
-            [case.start * self.length, overlap].map(|r| shown(&case.shown, Quantity::Length, r));
+        let start = shown(&case.shown, Quantity::Length, case.start * self.length);
+        // The same place for all loads, and said once.
+        let overlap = ascii_unit(&case.shown, Quantity::Length, overlap, |r| significant(r, 3));
         format!(
             "the disc of radius {start} at the start cannot exist alone: outside it the bodies would overlap at r = {overlap}. \
              One disc is followed all the same, and its numbers do not hold"
