@@ -193,7 +193,7 @@ def test_sentences_name_the_arguments_of_python():
             problem.fit(data, **arguments)
         said.append(str(caught.value))
     assert not any("--" in sentence for sentence in said), said
-    for sentence, word in zip(said, ["free=[", "data", "free key nothing", "replace", "both an approach and a retraction", "columns"]):
+    for sentence, word in zip(said, ["free=[", "data", "free key nothing", "first guess", "both an approach and a retraction", "columns"]):
         assert word in sentence, said
     assert "--" not in "".join(SPHERE.fit(points(), FREE, **SIGMA).warnings)
 
