@@ -10,7 +10,7 @@ use pulloff_engine::preset::schema::NONE;
 use pulloff_engine::preset::{Preset, Row, Value};
 use pulloff_engine::problem::{Begin, Control};
 use pulloff_engine::report::PathReport;
-use pulloff_engine::report::number::{difference, short};
+use pulloff_engine::report::number::short;
 use pulloff_engine::ritz::{NewtonSettings, solve};
 use pulloff_engine::units::UnitSystem;
 use std::collections::HashSet;
@@ -82,7 +82,8 @@ impl Elements {
     /// In words: `which` of the two, and the labels for off and iterations.
     pub fn said(&self, which: &str, [off, iterations]: [&str; 2]) -> String {
         let found = self.iterations.map_or(String::new(), |count| format!(", {count} {iterations}"));
-        format!("{which}: {off} {} %{found}", difference(100.0 * self.off))
+        let sign = if self.off < 0.0 { "" } else { "+" };
+        format!("{which}: {off} {sign}{} %{found}", short(100.0 * self.off, 2))
     }
 }
 
