@@ -287,7 +287,7 @@ fn rows_that_are_only_taken_to_be_apart_are_told() {
     let off = reasons.iter().find(|reason| reason["kind"] == "not-apart").expect("what is off");
     assert!(off["sentence"].as_str().unwrap().contains("--free-part none"), "{off}");
     assert!(
-        document["warnings"].to_string().contains("if they are right, the values are wrong"),
+        document["warnings"].to_string().contains("if that is no disturbance, the values are wrong"),
         "{document}"
     );
     assert!(reasons.iter().all(|reason| reason["kind"] != "tilt"), "{reasons:?}");

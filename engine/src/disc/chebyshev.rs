@@ -252,7 +252,7 @@ struct IntervalEnd {
     slope: f64,
 }
 
-/// An interval that a polynomial cannot leave and come back to within between its parts.
+/// On an interval at most this wide, a series that is rounding at the ends and at the borders of the parts is rounding throughout.
 const NARROW: f64 = 1e-2;
 
 /// The search for the roots of a series.
@@ -320,12 +320,12 @@ impl RootSearch<'_> {
         }
         let x: [f64; PARTS - 1] = std::array::from_fn(|i| lo.x + width * (i + 1) as f64 / PARTS as f64);
         let [values, slopes] = sums_and_slopes(self.series, f64x4::new(x)).map(f64x4::to_array);
-        // A zero of a high order: the bound of f'' is far too large there, and would lead down to single doubles.
+        // At a zero of high order the bound of f'' is far too large, and would lead down to single doubles.
         let largest =
             values.iter().chain(&[lo.value, hi.value]).fold(0.0, |most: f64, value| most.max(value.abs()));
         if width <= NARROW && largest <= self.own {
             if changes {
-                self.roots.push(0.5 * (lo.x + hi.x));
+                self.roots.push(bracketed(self.series, [lo.x, hi.x], hi.value > 0.0));
             }
             return;
         }

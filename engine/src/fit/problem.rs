@@ -62,7 +62,7 @@ impl Target {
 /// The key of the work of adhesion.
 pub const ADHESION: &str = "material.work_of_adhesion";
 
-/// The key of the modulus.
+/// The key of E*.
 pub const MODULUS: &str = "material.effective_modulus";
 
 /// The key of the contact radius at which a pull begins.

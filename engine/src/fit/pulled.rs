@@ -144,8 +144,8 @@ impl Trail {
         let (puller, rate) = puller(preset, reduced, table, held, tolerance)?;
         let start = puller.start;
         let is_far = |at: [f64; 3]| eye.x(at) - reach.turn[0] > FAR * reach.length;
-        // The transform of a gap is no smaller than the gap where that grows: what is far by half of it needs no table, which would
-        // be as long as the start is far.
+        // The transform of a growing gap is at least the gap itself. If half of the gap is already far beyond the points, no table
+        // is made: it would reach as far as the start, over any number of waves.
         let least = 0.5 * reduced.gap.jet(start).value - (TAU * reduced.work_of_adhesion * start).sqrt();
         if is_far([start, least, 0.0]) {
             return None;

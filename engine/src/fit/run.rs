@@ -102,7 +102,7 @@ impl<'a> Posed<'a> {
     /// Whether the zero of the force lies high above zero, where no rows show it. Rows apart that count as contact lift it by a
     /// third of the largest pull: the jump under fixed grips then looks like the last rise of a contact.
     fn is_lifted(&self) -> bool {
-        /// As a share of the largest pull. A tare is a share of the largest force, which may be a hundred times as large.
+        /// As a share of the largest pull. A tare is no measure: it is a share of the largest force, which may be a preload.
         const LIFTED: f64 = 0.25;
         let baseline = self.problem.instrument_at(&self.solved.minimum.parameters).baseline;
         let forces = self.branches.list.iter().flat_map(|branch| &branch.attached).map(|point| point.force);

@@ -196,6 +196,22 @@ fn a_cone_is_found() {
     close(&fit, &[e, w], 1e-8);
 }
 
+/// One step outward may raise such a gap from that of the points to far beyond them.
+#[test]
+fn a_gap_as_steep_as_a_wall_is_found() {
+    let (e, w, c, n) = (1.0, 0.001, 0.05, 80);
+    // The integral of the sine to the power of n - 1, after Wallis.
+    let wallis: f64 = (1..n / 2).map(|k| 2.0 * f64::from(k) / (2.0 * f64::from(k) + 1.0)).product();
+    let g = f64::from(n) * c * wallis;
+    let wall = move |s: f64| {
+        let delta = g * s.powi(n) - (TAU * w * s / e).sqrt();
+        (delta, 2.0 * e * (delta * s - g * s.powi(n + 1) / f64::from(n + 1)))
+    };
+    let points = Body { state: &wall, compliance: 0.0, most: 1.0 }.samples(200);
+    let gap = "shape='power-law'\ncoefficient=0.05\nexponent=80.0";
+    close(&run(&preset(gap, 1.4, 0.0006, ""), &points, &[E, W]), &[e, w], 1e-6);
+}
+
 #[test]
 fn a_spring_is_part_of_the_way_and_can_be_fitted() {
     let body = Body { state: &sphere(1.3, 0.02, 2.0), compliance: 1.0 / 0.8, most: 1.6 };

@@ -320,8 +320,8 @@ fn outermost(
 ) -> Option<f64> {
     const FIRST: f64 = 1e-7;
     const GROWTH: f64 = 1.5;
-    /// Where the gap is this many ranges of x high, the contact has nothing to do with the points: its modulus is far too small,
-    /// and its table goes over thousands of waves.
+    /// Where the gap is this many ranges of x high, the contact has nothing to do with the points: the modulus is far too small,
+    /// and the table would go over thousands of waves.
     const FAR: f64 = 1e3;
     let largest = reduced.largest_contact();
     let highest = FAR * reach.length / eye.units.length;
@@ -330,9 +330,6 @@ fn outermost(
     for _ in 0..120 {
         if s >= largest {
             return Some(largest);
-        }
-        if reduced.gap.jet(s).value > highest {
-            return None;
         }
         let at = basis.equilibrium(reduced, s)?;
         let state = [s, at.approach, at.force];
@@ -346,6 +343,10 @@ fn outermost(
             };
             let last = wave.map_or(s, |wave| beyond_crests(s, wave, largest, &enough));
             return Some((MARGIN * last).min(largest));
+        }
+        // Not sooner: on a steep gap the step that reaches the points may go far beyond them.
+        if reduced.gap.jet(s).value > highest {
+            return None;
         }
         before = here;
         s *= GROWTH;

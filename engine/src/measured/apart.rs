@@ -51,7 +51,7 @@ pub(super) fn jump(x: &[f64], force: &[f64]) -> Option<RowJump> {
     if n < 2 * FEWEST {
         return None;
     }
-    // They would lift the mean of the last rows in contact.
+    // The rows of a load that came off would lift the mean of the last rows in contact.
     let kept = n - Some(fallen(x, force)).filter(|rows| n >= FEW || *rows < BEHIND).unwrap_or(0);
     let Some(mut found) = of_many(&x[..kept], &force[..kept]) else {
         return if n < SPARSE { of_few(force) } else { None };
@@ -187,7 +187,7 @@ fn is_flat(x: &[f64], force: &[f64], at: usize, height: f64, w: usize) -> bool {
     // before.
     let (near, far) = before.split_at(before.len() / 2);
     let [changes, changed] = [(p1 - p0).abs(), (of(near) - of(far)).abs()];
-    // Where a dead load nears the pull-off, the force hardly changes in contact either: apart is where there is less of it.
+    // Near the pull-off of a dead load the force hardly changes in contact either. The side with the smaller force is then apart.
     let is_alike = changes.max(changed) <= ALIKE * height && of(rest).abs() < of(before).abs();
     (changes <= changed || is_alike)
         && (p1 - p0).abs().max(over_rows) <= GOES_ON * height

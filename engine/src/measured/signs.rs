@@ -11,7 +11,7 @@ use super::turns::{one_way, runs};
 
 /// Jumps of this share of the clearest one are as likely.
 const LIKELY: f64 = 0.5;
-/// With so few rows in contact of many there is nothing to fit: what looks like them are rows apart, seen backwards.
+/// Of many rows, fewer than this in contact could not be fitted: they are rows apart, read backwards.
 const IN_CONTACT: usize = 10;
 /// Jumps to rows that go on count alone if they have this share of the clearest of all.
 const CLEAR: f64 = 0.25;
@@ -276,7 +276,7 @@ pub(super) fn is_swapped(points: &[MeasuredPoint]) -> bool {
     const GOES_ON: f64 = 0.02;
     /// So many standard deviations of a row, over the root of the rows of a half.
     const CERTAIN: f64 = 8.0;
-    /// A change by less than this share of the range is none, however small the noise is.
+    /// However small the noise is, a change by less than this share of the range counts as none.
     const NONE: f64 = 0.002;
     let (x, force): (Vec<f64>, Vec<f64>) = points.iter().map(|point| (point.x, point.force)).unzip();
     let count = (x.len() / ROWS).max(END_ROWS).min(x.len());
@@ -291,7 +291,7 @@ pub(super) fn is_swapped(points: &[MeasuredPoint]) -> bool {
         let noise = scatter_over(&rows, of).unwrap_or(0.0) / range(of.iter().copied());
         CERTAIN * noise / ((count / 2) as f64).sqrt()
     });
-    // Beside the long way after a jump even what goes on in contact is a small share of x.
+    // After a long jump, what x changes by in contact is a small share of its range, but it is more than noise.
     let (still, goes_on) = (still.clamp(NONE, STILL), goes_on.max(GOES_ON));
     [0..count, x.len() - count..x.len()]
         .into_iter()

@@ -60,8 +60,8 @@ pub(super) fn of_contact(problem: &FitProblem, solved: &SolvedFit) -> Option<Rea
     })
 }
 
-/// A sentence on rows at the ends of the parts of a branch that are so far off that they may show what the others do not: a jump
-/// in the last row, or rows that are taken to be apart though they are not.
+/// A sentence on rows at the ends of the contact or of the rows apart that are very far off. They may show a jump in the last row,
+/// or that rows in contact are taken to be apart.
 pub(super) fn of_ends(problem: &FitProblem, solved: &SolvedFit) -> Option<String> {
     /// How far, in σ, and how many rows are at an end.
     const FAR: f64 = 30.0;
@@ -76,20 +76,22 @@ pub(super) fn of_ends(problem: &FitProblem, solved: &SolvedFit) -> Option<String
         })
         .filter(|row| row.residual.abs() > far)
         .collect();
-    let most = off.iter().map(|row| row.residual.abs()).reduce(f64::max)?;
+    let most = short(off.iter().map(|row| row.residual.abs()).reduce(f64::max)?, 2);
     let mut numbers: Vec<usize> = off.iter().map(|row| problem.data[row.index].point.row).collect();
     numbers.sort_unstable();
-    let numbers: Vec<String> = numbers.iter().map(ToString::to_string).collect();
-    let [rows, lie, count] = if numbers.len() > 1 {
-        ["rows", "lie", "count as outliers: if they are"]
-    } else {
-        ["row", "lies", "counts as an outlier: if it is"]
+    let what = match &numbers[..] {
+        [row] => format!(
+            "row {row}, at an end of the contact or of the rows apart, lies {most} sigma off the model"
+        ),
+        rows => {
+            let rows: Vec<String> = rows.iter().map(ToString::to_string).collect();
+            let rows = rows.join(", ");
+            format!(
+                "rows {rows}, at ends of the contact or of the rows apart, lie up to {most} sigma off the model"
+            )
+        }
     };
-    Some(format!(
-        "{rows} {} at the end of a part of the points {lie} up to {} sigma from the model and {count} right, the values are wrong",
-        numbers.join(", "),
-        short(most, 2)
-    ))
+    Some(format!("{what} and hardly count: if that is no disturbance, the values are wrong"))
 }
 
 /// Forces that differ between the branches.
