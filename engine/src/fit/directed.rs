@@ -8,13 +8,16 @@ use super::problem::START;
 use super::pulled::is_pulled;
 use super::run::fit_branches;
 use super::verdict::{Reason, Verdict};
+use crate::gap::Gap;
+use crate::measured::asked::FreePart;
 use crate::measured::asked::signs_text;
 use crate::measured::points::Turned;
 use crate::measured::{Asked, Branches, Points};
-use crate::preset::data::COLUMNS;
+use crate::preset::data::{COLUMNS, FREE_PART};
 use crate::preset::edge::CLOSING_ADHESION;
 use crate::preset::{OtherReading, Preset};
 use crate::progress::{Progress, ProgressPart};
+use crate::text::counted;
 use crate::units::Quantity;
 use crate::units::number::{said, short};
 
@@ -115,7 +118,11 @@ pub fn fit(
     options: &Options,
     progress: &dyn Progress,
 ) -> Result<Fit, FitError> {
-    let mut found = directed(preset, points, options, progress)?;
+    let found = directed(preset, points, options, progress);
+    let mut found = match of_all_in_contact(preset, points, (options, &found), progress) {
+        Some(found) => found,
+        None => found?,
+    };
     found.warnings.extend(options.asked.idle_ranges(points, &preset.units));
     let Some(at) = found.reasons.iter().position(|reason| reason.kind == BRANCHES) else {
         found.reasons.splice(0..0, of_pinned_edge(preset, points, (options, &found), progress));
@@ -135,6 +142,47 @@ pub fn fit(
         found.reasons.insert(if is_described { 0 } else { at }, reason);
     }
     Ok(found)
+}
+
+/// The fit with all rows in contact, where only that describes them: on waves a record that ends in contact may look as if it
+/// ended apart.
+fn of_all_in_contact(
+    preset: &Preset,
+    points: &Points,
+    (options, own): (&Options, &Result<Fit, FitError>),
+    progress: &dyn Progress,
+) -> Option<Fit> {
+    /// A fit that describes its points with a larger χ² per degree of freedom leaves much of them to outliers.
+    const LARGE: f64 = 2.0;
+    let own = match own {
+        Ok(own) if own.verdict == Verdict::Describes => Some(own.chi_squared),
+        _ => None,
+    };
+    let is_found = options.asked.free == FreePart::Found && preset.gap.feature_length().is_some();
+    if !is_found || own.is_some_and(|own| own < LARGE) || progress.stop() {
+        return None;
+    }
+    let branches = points.branches(&options.asked).ok()?;
+    let apart: usize = branches.list.iter().map(|branch| branch.free.len()).sum();
+    if apart == 0 {
+        return None;
+    }
+    let asked = Asked { free: FreePart::None, ..options.asked };
+    let options = Options { asked, ..options.clone() };
+    let progress = ProgressPart::new(progress, [1.0, 1.0]);
+    let quick = directed(preset, points, &options.without_intervals(), &progress).ok()?;
+    let is_better = own.is_none_or(|own| LARGE * quick.chi_squared < own);
+    if quick.verdict != Verdict::Describes || !is_better {
+        return None;
+    }
+    let mut found = directed(preset, points, &options, &progress).ok()?;
+    found.preset.set(FREE_PART, "none".into()).ok()?;
+    found.notes.push(format!(
+        "{} that may look apart {} in contact, since only then does the model describe the points: data.free_part is none",
+        counted(apart, "row"),
+        if apart == 1 { "is" } else { "are" }
+    ));
+    Some(found)
 }
 
 /// That a retraction alone, which the model does not describe, begins within a dead band, if it is described then.

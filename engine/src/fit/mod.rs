@@ -18,6 +18,7 @@
 //! | `rates` | the rate at which the points of a retraction are pulled |
 //! | `approached` | rows of a retraction in which the edge still closes |
 //! | [`start`] | where a fit starts |
+//! | `aligned` | where rows that end in contact may lie along a path with snaps |
 //! | [`solve`] | one fit with its own scale of the noise |
 //! | [`determined`] | covariance, condition, the direction in words |
 //! | `degrees` | how well the errors are known |
@@ -45,6 +46,7 @@
 //! Distances are measured to the curve itself and not along one axis: a residual P − P(x) jumps when the values change
 //! so that the pull-off passes a point, and its intervals then hold the truth in 8 % of trials.
 
+mod aligned;
 mod approached;
 mod bias;
 pub mod chance;

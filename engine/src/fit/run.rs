@@ -10,7 +10,7 @@ use super::judge::{
 };
 use super::laid::laid;
 use super::least_squares::Ending;
-use super::options::{FitError, Options};
+use super::options::{FitError, Options, letter};
 use super::outcome::Fit;
 use super::pose::posed;
 use super::problem::{ADHESION, FitProblem, FreeParameter, Paths, Target};
@@ -66,6 +66,8 @@ pub(super) struct Posed<'a> {
     pub(super) problem: FitProblem,
     starts: Vec<Tried>,
     pub(super) solved: SolvedFit,
+    /// Other values, as far as the rows do not tell them from these.
+    alike: Vec<Vec<f64>>,
     notes: Vec<String>,
     /// The approach before a pull of which all rows are used.
     approached: Option<Approached>,
@@ -130,13 +132,13 @@ impl<'a> Posed<'a> {
             let ends = start(problem, options.scan, options.robust, &ProgressPart::new(progress, [0.0, 0.8]))
                 .ok_or_else(|| no_start(&problem.preset))?;
             let solved = solve(problem, &ends.best)?;
-            let solved = nearest(problem, solved, &ends.others, options.robust, &part);
-            Ok((ends.tried, within_range(problem, solved, options.robust, &part)))
+            let (solved, alike) = nearest(problem, solved, &ends.others, options.robust, &part);
+            Ok((ends.tried, within_range(problem, solved, options.robust, &part), alike))
         };
-        let (mut starts, mut solved) = found(&mut problem)?;
+        let (mut starts, mut solved, mut alike) = found(&mut problem)?;
         if let Some(why) = problem.overlapping(&solved.minimum.parameters) {
             problem = problem.without_loading(why, &mut notes)?;
-            (starts, solved) = found(&mut problem)?;
+            (starts, solved, alike) = found(&mut problem)?;
         }
         let approached;
         (problem, solved, approached) = of_start(problem, solved, (&branches, options), &mut notes, &solve)?;
@@ -161,7 +163,7 @@ impl<'a> Posed<'a> {
             solved = of_tare(&mut problem, solved, options.robust, (&mut notes, progress));
         }
         notes.extend(of_no_free_part(&problem, &branches));
-        Ok(Self { preset, branches, options, problem, starts, solved, notes, approached })
+        Ok(Self { preset, branches, options, problem, starts, solved, alike, notes, approached })
     }
 
     /// Leaves out the rows in which the edge still closes after a fast approach, if under a law that other curves determine, too,
@@ -187,9 +189,12 @@ impl<'a> Posed<'a> {
         alone: bool,
         progress: &dyn Progress,
     ) -> Result<Fit, FitError> {
-        let Self { preset, branches, options, problem, starts, solved, mut notes, approached } = self;
+        let Self { preset, branches, options, problem, starts, solved, alike, mut notes, approached } = self;
         let branches = &*branches;
         let u = &solved.minimum.parameters;
+        if let Some(direction) = of_alike(&problem, u, &alike, &what).filter(|_| alone) {
+            what = what.without_errors(direction);
+        }
         let is_unseen;
         (what, is_unseen) = with_range(&problem, &solved, (what, &scatter), options.robust, progress);
         let priors = given(&problem, &what.shares, &mut notes);
@@ -269,6 +274,23 @@ fn with_range(
         direction.extend(of_first_pull(problem, solved).map(|said| format!("; {said}")));
     }
     (what, false)
+}
+
+/// Values far beyond the errors that the points do not tell from those at `u`.
+fn of_alike(problem: &FitProblem, u: &[f64], alike: &[Vec<f64>], what: &Determined) -> Option<String> {
+    /// How far, in standard errors.
+    const FAR: f64 = 3.0;
+    let errors = what.errors.as_ref()?;
+    let is_far = |other: &&Vec<f64>| {
+        other.len() == u.len() && (0..u.len()).any(|j| (u[j] - other[j]).abs() > FAR * errors[j])
+    };
+    let other = alike.iter().find(is_far)?;
+    let shown = problem.parameters.iter().zip(other).map(|(parameter, at)| {
+        let key = parameter.key();
+        let value = significant(parameter.value(*at), 4);
+        format!("{} = {value}", letter(&problem.preset, &key))
+    });
+    Some(format!("{} describe the points as well, in base units", shown.collect::<Vec<_>>().join(", ")))
 }
 
 /// Why no start leads to a curve that reaches the points.

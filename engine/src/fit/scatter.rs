@@ -24,7 +24,7 @@ const OUTLIER: f64 = 4.0;
 /// Fewer rows on a branch say nothing about neighbours.
 const FEWEST: usize = 5;
 /// The fewest rows apart in which a correlation is sought.
-const FEWEST_APART: usize = 20;
+pub(super) const FEWEST_APART: usize = 20;
 /// One in this many rows apart belongs to the farthest, in which a correlation must be seen too.
 const OUTER: usize = 2;
 /// Rows apart that scatter by less than this share of σ are rounding, in which there is always some order.
@@ -83,7 +83,7 @@ impl Correlation {
     }
 
     /// The variance of second differences, in units of that of white noise.
-    fn of_differences(&self) -> f64 {
+    pub(super) fn of_differences(&self) -> f64 {
         1.0 - (8.0 * self.at(1.0) - 2.0 * self.at(2.0)) / 6.0
     }
 }
@@ -224,7 +224,7 @@ fn goes_on(values: &[f64]) -> bool {
 }
 
 /// The values without their mean and without their slope over the order.
-fn detrended(values: &[f64]) -> Vec<f64> {
+pub(super) fn detrended(values: &[f64]) -> Vec<f64> {
     let n = values.len() as f64;
     let (mean, middle) = (values.iter().sum::<f64>() / n, 0.5 * (n - 1.0));
     let [xx, xy] = values.iter().enumerate().fold([0.0; 2], |[xx, xy], (i, y)| {

@@ -45,25 +45,35 @@ pub(super) fn last(
     Ok(solved)
 }
 
-/// The nearest of the minima from `solved` and from `others`, which some of the rows did not tell apart.
+/// The nearest of the minima from `solved` and from `others`, which some of the rows did not tell apart; and those that all rows do
+/// not tell from it.
 pub(super) fn nearest(
     problem: &FitProblem,
-    mut solved: SolvedFit,
+    solved: SolvedFit,
     others: &[Vec<f64>],
     robust: bool,
     progress: &dyn Progress,
-) -> SolvedFit {
+) -> (SolvedFit, Vec<Vec<f64>>) {
+    /// By how much χ² may be larger, in squares of the scale: one in seventy right values of one quantity is farther off.
+    const ALIKE: f64 = 6.0;
     let huber = HUBER * solved.scale;
-    let cost = |solved: &SolvedFit| problem.cost_at(&solved.minimum.parameters, huber);
-    let is_late = problem.is_late(&solved.minimum.parameters, solved.scale);
-    for u in others {
-        let Some(other) = solve(problem, u, robust, ROUNDS, progress) else { continue };
-        let nearer = cost(&other).zip(cost(&solved)).is_some_and(|(other, own)| other < own);
-        if nearer && (is_late || !problem.is_late(&other.minimum.parameters, other.scale)) {
-            solved = other;
+    let cost =
+        |solved: &SolvedFit| problem.cost_at(&solved.minimum.parameters, huber).unwrap_or(f64::INFINITY);
+    let is_late = |solved: &SolvedFit| problem.is_late(&solved.minimum.parameters, solved.scale);
+    let led = others.iter().filter_map(|u| solve(problem, u, robust, ROUNDS, progress));
+    let mut ends: Vec<SolvedFit> = std::iter::once(solved).chain(led).collect();
+    let first_is_late = is_late(&ends[0]);
+    let mut best = 0;
+    for i in 1..ends.len() {
+        if cost(&ends[i]) < cost(&ends[best]) && (first_is_late || !is_late(&ends[i])) {
+            best = i;
         }
     }
-    solved
+    let solved = ends.swap_remove(best);
+    // The cost is half of χ².
+    let most = cost(&solved) + 0.5 * ALIKE * solved.scale.powi(2);
+    let alike = ends.into_iter().filter(|end| cost(end) < most && (first_is_late || !is_late(end)));
+    (solved, alike.map(|end| end.minimum.parameters).collect())
 }
 
 /// The minimum where a range ended at the smallest one for which there is a path: there the other values did not follow. It is

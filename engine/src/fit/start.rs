@@ -3,6 +3,7 @@
 //! E* runs over five decades; at each value γ is such that the smallest force is that of the points, and δ₀ is the
 //! median offset. Other free keys are tried at a few multiples of their values.
 
+use super::aligned::may_end_early;
 use super::least_squares::{LeastSquares, cost};
 use super::problem::{ADHESION, Datum, FitProblem, MODULUS, START, Target};
 use super::pulled::is_pulled;
@@ -30,9 +31,10 @@ const MOST: usize = 400;
 /// The number of points by which candidates are compared, and of those on which the best are run.
 const COMPARED: usize = 60;
 const RUN: usize = 240;
-/// On waves a candidate is judged by where a few rounds lead it: how many of the best are run, how many times as far
-/// off as the nearest they may be, and for how many rounds.
+/// On waves a candidate is judged by where a few rounds lead it: how many of the best are run, and how many of a record that may
+/// end early, how many times as far off as the nearest they may be, and for how many rounds.
 const POOL: usize = 12;
+const MANY: usize = 48;
 const NEAR: f64 = 3.0;
 const FEW_ROUNDS: usize = 4;
 /// How many of the best are run, and for how many rounds.
@@ -45,8 +47,10 @@ const ONE: f64 = 0.01;
 const OTHER: f64 = 0.2;
 /// Points at a larger mean distance, in σ, are not reached, whatever starts end there.
 pub(super) const REACHED: f64 = 2.0;
-/// Ends whose mean distance is larger by less than this factor are told apart by all rows only.
+/// Ends whose mean distance is larger by less than this factor are told apart by all rows only, if by them; and what few rows
+/// add to it, times their number.
 const AS_NEAR: f64 = 1.02;
+const FEW: f64 = 4.0;
 
 /// A start that was run.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -139,6 +143,11 @@ impl FitProblem {
                 u[j] += 0.7 * ln(ratio);
             }
         }
+        let early = if may_end_early(&self.preset, &self.data) {
+            self.cut_early(&u, &adhesions, &offsets)
+        } else {
+            Vec::new()
+        };
         if let (&[j], false) = (offsets.as_slice(), self.abscissa == Abscissa::Radius) {
             let paths = self.paths(&u)?;
             let at = self.instrument_at(&u);
@@ -165,10 +174,28 @@ impl FitProblem {
                 self.begun(&mut u);
                 u
             };
-            let found: Vec<Vec<f64>> = found.map(with).collect();
+            let found: Vec<Vec<f64>> = found.map(with).chain(early).collect();
             return Some(if found.is_empty() { vec![u] } else { found });
         }
-        Some(vec![u])
+        Some([u].into_iter().chain(early).collect())
+    }
+
+    /// Candidates for a record that ends before the smallest force of its path: larger works of adhesion than that of `u`, each
+    /// with the offset that suits it.
+    fn cut_early(&self, u: &[f64], adhesions: &[usize], offsets: &[usize]) -> Vec<Vec<f64>> {
+        const LARGER: [f64; 7] = [1.0, 1.25, 1.6, 2.0, 2.5, 3.2, 4.0];
+        /// Where a wave more or less is held open.
+        const WAVES: usize = 2;
+        let with = |factor: &f64| {
+            let mut u = u.to_vec();
+            adhesions.iter().for_each(|&j| u[j] += ln(*factor));
+            match offsets {
+                [j] => self.aligned(&u, *j, WAVES),
+                _ => vec![u],
+            }
+        };
+        let count = if adhesions.is_empty() { 1 } else { LARGER.len() };
+        LARGER[..count].iter().flat_map(with).collect()
     }
 
     /// Candidates where adhesion has a range: the best ones without a range, which are found quickly, with some ranges
@@ -431,8 +458,9 @@ fn ranked(problem: &FitProblem, scan: bool, robust: bool, progress: &dyn Progres
         ranked.sort_by(|a, b| a.0.total_cmp(&b.0));
         ranked.truncate(most);
     };
+    let early = scan && may_end_early(&problem.preset, &problem.data);
     if scan && problem.preset.gap.feature_length().is_some() {
-        by_distance(&mut ranked, POOL);
+        by_distance(&mut ranked, if early { MANY } else { POOL });
         let nearest = ranked.first().map_or(0.0, |(distance, _)| *distance);
         for (distance, u) in ranked.iter_mut().filter(|(distance, _)| *distance <= NEAR * nearest) {
             let led = solve(&compared, u, robust, FEW_ROUNDS, progress).map(|led| led.minimum.parameters);
@@ -442,6 +470,14 @@ fn ranked(problem: &FitProblem, scan: bool, robust: bool, progress: &dyn Progres
                 (*distance, *u) = (closer, led);
             }
         }
+        // Several of them lead to one place.
+        let mut places: Vec<(f64, Vec<f64>)> = Vec::new();
+        for (distance, u) in ranked {
+            if places.iter().all(|(_, other)| apart(other, &u) > ONE) {
+                places.push((distance, u));
+            }
+        }
+        ranked = places;
     }
     by_distance(&mut ranked, BEST);
     // The values of a pull that are given may be guesses that its scan does not come near.
@@ -504,8 +540,9 @@ fn best_of(
             best = end;
         }
     }
+    let as_near = AS_NEAR.max(1.0 + FEW / run.data.len() as f64);
     let is_other = |(distance, u): &(f64, Vec<f64>)| {
-        *distance < AS_NEAR * best.distance && best.distance < REACHED && apart(u, &best.u) > ONE
+        *distance < as_near * best.distance && best.distance < REACHED && apart(u, &best.u) > ONE
     };
     let mut others: Vec<Vec<f64>> = Vec::new();
     for (_, u) in ends.into_iter().filter(is_other) {

@@ -238,7 +238,7 @@ fn of_several_ends_the_nearest_to_all_rows_counts() {
     let beside: Vec<f64> = truth.iter().map(|u| u + 0.05).collect();
     let end = |u: &[f64]| solve::solve(&problem, u, false, 0, &Unwatched).unwrap();
     let from = |u: &[f64], others: &[Vec<f64>]| {
-        let found = settled::nearest(&problem, end(u), others, false, &Unwatched);
+        let found = settled::nearest(&problem, end(u), others, false, &Unwatched).0;
         found.minimum.parameters
     };
     let is_at_truth = |u: &[f64]| u.iter().zip(&truth).take(2).all(|(a, b)| (a - b).abs() < 1e-3);

@@ -39,6 +39,33 @@ fn a_record_that_begins_behind_a_crest_is_found() {
     close(&fit, &[1.0, 5e-5], 5e-3);
 }
 
+/// A record that ends on a wave, before the largest pull: its last rows look as if they were apart, its smallest force is not that
+/// of the path, and where x is zero is not known.
+#[test]
+fn a_record_that_ends_on_a_wave_is_found_or_said_to_be_ambiguous() {
+    let mut truth = preset(WAVES, 1.0, 0.004, "");
+    truth.path.start = crate::problem::Start::ContactRadius(0.41);
+    let whole = unloaded(&truth, 400);
+    let found = |rows: std::ops::Range<usize>| {
+        let mut normal = Normal::new(rows.start as u64 + 1);
+        let part = |values: &[f64]| values[rows.clone()].iter().step_by(3).copied().collect::<Vec<f64>>();
+        let (mut x, mut force) = (part(&whole.x), part(&whole.force));
+        let n = x.len();
+        x.iter_mut().for_each(|x| *x += 0.05 + 1e-5 * normal.next());
+        force.iter_mut().for_each(|force| *force += 2e-5 * normal.next());
+        let points = over_approach(x, force, vec![Segment::Retraction; n]);
+        run(&preset(WAVES, 1.0, 0.004, ""), &points, &[E, W, "data.offset"])
+    };
+    let fit = found(0..130);
+    assert_eq!(fit.verdict, Verdict::Describes, "{:?}", fit.reasons);
+    assert_eq!((fit.rows.fitted(), &*fit.preset.data.free_part), (fit.rows.contact(), "none"));
+    close(&fit, &[1.0, 0.004, 0.05], 1e-2);
+    // Few rows with one jump: it may be that of another wave.
+    let fit = found(20..100);
+    assert_eq!(fit.verdict, Verdict::NotDetermined, "{:?}", fit.reasons);
+    assert!(fit.direction.is_some_and(|said| said.contains("describe the points as well")));
+}
+
 /// Our own unloading of a preset under fixed grips, evenly spaced in the approach, with a free part.
 fn unloaded(preset: &Preset, n: usize) -> Points {
     let case = Case::new(preset).unwrap();

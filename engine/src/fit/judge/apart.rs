@@ -4,7 +4,7 @@
 
 use super::super::chance::beyond_t;
 use super::super::problem::FitProblem;
-use super::super::scatter::Scatter;
+use super::super::scatter::{FEWEST_APART, Scatter, detrended};
 use super::super::solve::SolvedFit;
 use super::super::verdict::Reason;
 use super::ROUNDING;
@@ -37,8 +37,37 @@ pub(super) fn of_apart(problem: &FitProblem, solved: &SolvedFit, scatter: &Scatt
             ),
         ));
     }
+    if scatter.apart < FEWEST_APART {
+        reasons.extend(order(problem, solved));
+    }
     reasons.extend(levels(problem, solved, tau));
     reasons
+}
+
+/// Rows apart, too few to show how their noise is correlated, that follow each other as no noise does: by the mean square of their
+/// steps over their variance, 2 ± 2 √((n − 2)/(n² − 1)) for noise; J. von Neumann, Ann. Math. Stat. 12, 367 (1941).
+fn order(problem: &FitProblem, solved: &SolvedFit) -> Option<Reason> {
+    /// One in a thousand, for a normal deviate on one side.
+    const BEYOND: f64 = 3.09;
+    (0..problem.branches()).find_map(|branch| {
+        let rows = problem.rows(solved, branch, true, 0);
+        let n = rows.len() as f64;
+        let rest = detrended(&rows.iter().map(|row| row.residual).collect::<Vec<_>>());
+        let squares: f64 = rest.iter().map(|rest| rest * rest).sum();
+        if rows.len() < FEWEST || squares <= ROUNDING * ROUNDING * n {
+            return None;
+        }
+        let steps: f64 = rest.windows(2).map(|pair| (pair[1] - pair[0]).powi(2)).sum();
+        let ratio = steps / (n - 1.0) / (squares / n);
+        let off = (2.0 - ratio) / (2.0 * ((n - 2.0) / (n * n - 1.0)).sqrt());
+        let sentence = format!(
+            "the force is not constant where the bodies are apart: the {} there follow each other as noise seldom does \
+             ({} standard deviations). It drifts, or they are in contact",
+            counted(rows.len(), "row"),
+            short(off, 2)
+        );
+        (off > BEYOND).then(|| Reason::new("drift", off, sentence))
+    })
 }
 
 /// Rows taken to be apart that do not have the force of bodies apart: a record that ends in contact, and is flat there,
@@ -81,17 +110,17 @@ pub(super) fn of_ends(problem: &FitProblem, solved: &SolvedFit) -> Option<String
     numbers.sort_unstable();
     let what = match &numbers[..] {
         [row] => format!(
-            "row {row}, at an end of the contact or of the rows apart, lies {most} sigma off the model"
+            "row {row}, at an end of the contact or of the rows apart, lies {most} sigma off the model and hardly counts"
         ),
         rows => {
             let rows: Vec<String> = rows.iter().map(ToString::to_string).collect();
-            let rows = rows.join(", ");
             format!(
-                "rows {rows}, at ends of the contact or of the rows apart, lie up to {most} sigma off the model"
+                "rows {}, at ends of the contact or of the rows apart, lie up to {most} sigma off the model and hardly count",
+                rows.join(", ")
             )
         }
     };
-    Some(format!("{what} and hardly count: if that is no disturbance, the values are wrong"))
+    Some(format!("{what}: if that is no disturbance, the values are wrong"))
 }
 
 /// Forces that differ between the branches.

@@ -17,6 +17,7 @@ use super::super::scatter::{ScatterRow, outlier};
 use super::super::verdict::Reason;
 use super::{Evidence, ROUNDING, runs};
 use crate::elementary::{hypot, ln};
+use crate::measured::branches::median;
 use crate::measured::{Abscissa, Instrument, Segment};
 use crate::preset::edge::CLOSING_ADHESION;
 use crate::text::counted;
@@ -77,7 +78,37 @@ pub(super) fn of_contact(evidence: Evidence) -> Vec<Reason> {
     if scatter.correlation.share <= 0.0 && scatter.residuals > ROUNDING {
         reasons.extend(of_runs(evidence));
     }
+    if reasons.is_empty() {
+        reasons.extend(of_ramps(evidence));
+    }
     reasons
+}
+
+/// Residuals that are smooth between jumps, as where the path jumps at other places than the points: with many jumps among few rows
+/// all measures of the noise but medians take these for noise. A converter does the same within its steps.
+fn of_ramps(Evidence { problem, solved, scatter, .. }: Evidence) -> Option<Reason> {
+    /// The fewest rows, and the ratio of medians that white noise exceeds in one of ten thousand series of so many.
+    const FEWEST: usize = 15;
+    const RATIO: f64 = 6.0;
+    (0..problem.branches()).find_map(|branch| {
+        let rows = problem.in_order(solved, branch, false, 0);
+        let differences = rows.windows(3).map(|three| {
+            (three[0].residual - 2.0 * three[1].residual + three[2].residual).abs() / 6.0_f64.sqrt()
+        });
+        let typical = median(rows.iter().map(|row| row.residual.abs()).collect())?;
+        let noise = median(differences.collect())? / scatter.correlation.of_differences().sqrt();
+        let ratio = typical / noise.max(ROUNDING);
+        let is_of_converter = typical * problem.sigma[1] < problem.step;
+        (rows.len() >= FEWEST && ratio > RATIO && !is_of_converter).then(|| {
+            let sentence = format!(
+                "the model does not describe this: between jumps the residuals of the {} go on smoothly, and are {} times the \
+                 noise of neighbouring points",
+                problem.data[rows[0].index].segment.name(),
+                short(ratio, 3)
+            );
+            Reason::new("ramps", ratio, sentence)
+        })
+    })
 }
 
 /// The held values that are wrong most often, as the end of a sentence.
