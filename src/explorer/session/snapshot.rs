@@ -143,9 +143,11 @@ impl Snapshot {
             && self.journal == other.journal
     }
 
-    /// Whether there is anything to lose: a state walked, a value changed, a curve pinned. Looking does not count.
+    /// Whether there is anything to lose: a state walked, a value changed, a curve pinned, a map or a study over a range that was
+    /// asked for. Looking does not count.
     pub fn is_worth_keeping(&self) -> bool {
-        self.history.len() > 1 || self.preset != self.saved || !self.pins.is_empty()
+        let is_asked = self.look.map.is_some() || self.look.study.over.is_some();
+        self.history.len() > 1 || self.preset != self.saved || !self.pins.is_empty() || is_asked
     }
 
     /// The states walked by hand.

@@ -54,6 +54,7 @@ pub(in crate::explorer) fn turn(model: &mut Model, id: Id, key: Option<&str>) ->
     match nudge(&model.preset, &row, up, amount, contact) {
         Ok(preset) => {
             tell_effect(model, &row.key, &preset);
+            tell_points(model, &preset);
             change(model, preset)
         }
         Err(reason) => model.refuse(reason),
@@ -380,13 +381,17 @@ fn file_name(preset: &Preset) -> String {
     path.file_name().map_or_else(String::new, |name| show_name(&name.to_string_lossy()))
 }
 
-/// Reports how many points `preset` has by branch and part, if they differ from before or are read differently.
+/// Reports how many points `preset` has by branch and part, if they differ from before or are read differently, or that it has
+/// none any more.
 fn tell_points(model: &mut Model, preset: &Preset) {
     let taken = |preset: &Preset| (preset.data.columns.clone(), preset.reading().asked);
-    if model.preset.data.source == preset.data.source && taken(&model.preset) == taken(preset) {
+    let is_same = model.preset.data.source == preset.data.source && taken(&model.preset) == taken(preset);
+    let Some(branches) = preset.branches() else { return };
+    // A position is none without a spring.
+    let is_lost = || branches.is_err() && model.preset.branches().is_some_and(|before| before.is_ok());
+    if is_same && !is_lost() {
         return;
     }
-    let Some(branches) = preset.branches() else { return };
     let name = file_name(preset);
     match branches {
         Ok(branches) => {
