@@ -488,6 +488,8 @@ const RADII: RangeInclusive<f64> = 1e-30..=1e30;
 /// A radius within this share of the edge counts as the edge: fractions of it are rounded, as those of `numpy.linspace`
 /// are.
 const AT_EDGE: f64 = 8.0 * f64::EPSILON;
+/// The radii that are computed between two looks at whether to stop.
+const AT_ONCE: usize = 64;
 
 /// A state across the radius, in the units of the preset.
 struct Across {
@@ -524,14 +526,19 @@ impl Across {
                 f64::NAN
             }
         };
-        // Together with the farthest radius that the table is asked for, so that no gap depends on the other radii.
-        let outer: Vec<f64> = reduced.iter().map(|r| r.max(s)).chain([FAR * s]).collect();
-        let opened = exact.gap_outside(&case.reduced, s, delta, &outer);
-        let gap = reduced.iter().zip(opened).map(|(r, gap)| if *r < s { 0.0 } else { gap * units.length });
-        Ok(Some(Self {
-            approach: delta * units.length,
-            pressure: reduced.iter().map(pressure).collect(),
-            gap: gap.collect(),
-        }))
+        let mut across = Self { approach: delta * units.length, pressure: Vec::new(), gap: Vec::new() };
+        // Many radii take long, too.
+        for radii in reduced.chunks(AT_ONCE) {
+            if progress.stop() {
+                return Ok(None);
+            }
+            // Together with the farthest radius that the table is asked for, so that no gap depends on the other radii.
+            let outer: Vec<f64> = radii.iter().map(|r| r.max(s)).chain([FAR * s]).collect();
+            let opened = exact.gap_outside(&case.reduced, s, delta, &outer);
+            let gap = radii.iter().zip(opened).map(|(r, gap)| if *r < s { 0.0 } else { gap * units.length });
+            across.pressure.extend(radii.iter().map(pressure));
+            across.gap.extend(gap);
+        }
+        Ok(Some(across))
     }
 }

@@ -13,6 +13,7 @@ use crate::store::stream::{self, STANDARD};
 use crate::store::{Loaded, Store};
 use crate::tui::copy::drawn_alone;
 use clap::Args;
+use pulloff_engine::preset::shipped;
 use pulloff_engine::text::sanitize;
 use std::ffi::OsString;
 use std::io::{self, Write};
@@ -50,6 +51,13 @@ pub fn run(arguments: &RunArguments) -> Result<ExitCode, Failure> {
     {
         let text = "standard input holds the script or the preset, not both: name a file for one of them";
         return Err(Failure::Usage(text.to_owned()));
+    }
+    let named = arguments.script.to_str().filter(|name| shipped::find(name).is_some());
+    if let Some(name) = named.filter(|_| !arguments.script.exists()) {
+        let text = format!(
+            "{name} is a preset, and run takes a script of commands: pulloff {name} opens the explorer on it"
+        );
+        return Err(Failure::Usage(text));
     }
     let (name, text) = stream::read_given(&arguments.script, script::LARGEST)?;
     let lines = script::read(&name, &text).map_err(|error| Failure::Usage(error.to_string()))?;

@@ -256,8 +256,8 @@ fn a_model_that_does_not_describe_the_points_has_a_status_of_its_own() {
     assert_eq!((accepted.status, &accepted.out), (0, &ended.out));
 }
 
-/// A record that ends in contact, and is flat there, looks as if its last rows were apart: the fit says so, and what
-/// helps.
+/// A record that ends in contact, and is flat there, looks as if its last rows were apart: the fit takes them in contact, and says so;
+/// where they are said to be apart, it says what helps.
 #[test]
 fn rows_that_are_only_taken_to_be_apart_are_told() {
     let home = Home::new();
@@ -282,7 +282,9 @@ fn rows_that_are_only_taken_to_be_apart_are_told() {
     home.file("ends-in-contact.csv", &rows);
     let fit = ["fit", "ends-in-contact.csv", "wavy-sphere", "--free", "E*,gamma", "--format=json"];
     let found = |ended: &crate::support::home::Ended| -> Value { serde_json::from_str(&ended.out).unwrap() };
-    let document = found(&home.run(&fit));
+    let taken = found(&home.run(&fit));
+    assert!(taken["notes"].to_string().contains("9 rows that may look apart are in contact"), "{taken}");
+    let document = found(&home.run(&[&fit[..], &["--free-part", "x=-0.0502..-0.0471"]].concat()));
     let reasons = document["reasons"].as_array().unwrap();
     let off = reasons.iter().find(|reason| reason["kind"] == "not-apart").expect("what is off");
     assert!(off["sentence"].as_str().unwrap().contains("--free-part none"), "{off}");
@@ -295,6 +297,7 @@ fn rows_that_are_only_taken_to_be_apart_are_told() {
     assert_eq!(ended.status, 0, "{}", ended.err);
     let document = found(&ended);
     assert_eq!(document["verdict"].as_str(), Some("describes"));
+    assert_eq!(document["parameters"], taken["parameters"]);
     // Modulus and adhesion follow from one another here, which their errors do not say.
     let notes = document["notes"].to_string();
     assert!(notes.contains("E* and γ are known together far better than alone"), "{notes}");

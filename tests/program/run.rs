@@ -55,6 +55,17 @@ impl Scripts {
 }
 
 #[test]
+fn a_preset_in_place_of_a_script_is_told() {
+    let ended = Scripts::new().0.run(&["run", "wavy-sphere"]);
+    assert_eq!(ended.status, 2);
+    assert!(
+        ended.err.contains("wavy-sphere is a preset, and run takes a script of commands"),
+        "{}",
+        ended.err
+    );
+}
+
+#[test]
 fn a_script_walks_and_exports_and_its_session_walks_again() {
     let home = Scripts::new();
     let script = "# the first instability\nopen wavy-sphere gap.amplitude=0.003\nstep 3\nrun\njump\n\

@@ -137,7 +137,7 @@ impl Case {
         let text = if self.reduced.work_of_adhesion > 0.0 {
             "the gap decreases within the contact: without adhesion it would not be one connected disc. Whether the \
              bodies stay apart outside the disc is checked; tension inside is not: in the JKR limit any adhesion, \
-             however weak, bears it"
+             however weak, bears tension"
         } else {
             "the gap decreases within the contact, and there is no adhesion: for a connected disc it is checked that \
              the bodies stay apart outside it and that nothing pulls inside it"

@@ -192,11 +192,11 @@ impl<'a> Posed<'a> {
         let Self { preset, branches, options, problem, starts, solved, alike, mut notes, approached } = self;
         let branches = &*branches;
         let u = &solved.minimum.parameters;
+        let is_unseen;
+        (what, is_unseen) = with_range(&problem, &solved, (what, &scatter), options.robust, progress);
         if let Some(direction) = of_alike(&problem, u, &alike, &what).filter(|_| alone) {
             what = what.without_errors(direction);
         }
-        let is_unseen;
-        (what, is_unseen) = with_range(&problem, &solved, (what, &scatter), options.robust, progress);
         let priors = given(&problem, &what.shares, &mut notes);
         let real = problem.real(&solved.minimum.at.residuals);
         let rows = real.len() as f64 / scatter.correlation.rows();

@@ -188,7 +188,9 @@ impl FitProblem {
         const WAVES: usize = 2;
         let with = |factor: &f64| {
             let mut u = u.to_vec();
-            adhesions.iter().for_each(|&j| u[j] += ln(*factor));
+            for &j in adhesions {
+                u[j] += ln(*factor);
+            }
             match offsets {
                 [j] => self.aligned(&u, *j, WAVES),
                 _ => vec![u],

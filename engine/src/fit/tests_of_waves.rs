@@ -51,8 +51,10 @@ fn a_record_that_ends_on_a_wave_is_found_or_said_to_be_ambiguous() {
         let part = |values: &[f64]| values[rows.clone()].iter().step_by(3).copied().collect::<Vec<f64>>();
         let (mut x, mut force) = (part(&whole.x), part(&whole.force));
         let n = x.len();
-        x.iter_mut().for_each(|x| *x += 0.05 + 1e-5 * normal.next());
-        force.iter_mut().for_each(|force| *force += 2e-5 * normal.next());
+        for (x, force) in x.iter_mut().zip(&mut force) {
+            *x += 0.05 + 1e-5 * normal.next();
+            *force += 2e-5 * normal.next();
+        }
         let points = over_approach(x, force, vec![Segment::Retraction; n]);
         run(&preset(WAVES, 1.0, 0.004, ""), &points, &[E, W, "data.offset"])
     };

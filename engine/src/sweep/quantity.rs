@@ -84,15 +84,15 @@ macro_rules! quantities {
 quantities! {
     "largest_pull" "P" Force "smallest force of the unloading from path.start_contact_radius, negative: the largest pull; 0 or empty where nothing pulls":
         Stage::Least(OnPath::largest_pull, Control::Force);
-    "farthest" "δ" Length "smallest approach of that unloading": Stage::Least(OnPath::farthest, Control::Displacement);
-    "last_contact_force" "P" Force "force at the last contact of that unloading":
+    "farthest" "δ" Length "smallest approach of the unloading": Stage::Least(OnPath::farthest, Control::Displacement);
+    "last_contact_force" "P" Force "force at the last contact of the unloading":
         Stage::Unloading(|path| path.last_contact(|state| state.force));
     "last_contact_approach" "δ" Length "approach at the last contact":
         Stage::Unloading(|path| path.last_contact(|state| state.approach));
     "last_contact_radius" "s" Length "contact radius at the last contact":
         Stage::Unloading(|path| path.last_contact(|state| state.contact_radius));
-    "snaps" "" Count "jumps inward of that unloading before the last contact": Stage::Unloading(|path| Some(path.snaps()));
-    "snap_loss" "" Energy "energy lost in these jumps": Stage::Unloading(|path| Some(path.snap_loss()));
+    "snaps" "" Count "jumps inward of the unloading before the last contact": Stage::Unloading(|path| Some(path.snaps()));
+    "snap_loss" "" Energy "energy lost in the jumps of the unloading": Stage::Unloading(|path| Some(path.snap_loss()));
     "last_contact_loss" "" Energy "energy lost at the last contact; empty under a dead load":
         Stage::Unloading(OnPath::last_contact_loss);
     "snap_off_approach" "δ" Length "approach at which the zone of adhesion with a range ends; empty for short-range \

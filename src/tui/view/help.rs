@@ -18,7 +18,7 @@ use ratatui::widgets::{Clear, Paragraph};
 /// Commands in it are named in the form of [`Id::named`](crate::explorer::Id::named).
 const FIRST_STEPS: &[&str] = &[
     "The walker @ stands at the start of the path. \u{1}next-event\u{1} runs to the first event: there the edge lets go.",
-    "\u{1}next-event\u{1} again lets it happen and shows the energy lost; and so on, down to the last contact. \u{1}step\u{1} follows the equilibrium instead, past limit points too. \u{1}undo\u{1} takes back the last change of the walk or the values; turns of one value, one after the other, are one change.",
+    "\u{1}next-event\u{1} again lets it happen and shows the energy lost; and so on, down to the last contact. \u{1}step\u{1} follows the equilibrium instead, past limit points too. \u{1}undo\u{1} takes back the last change of the walk or the values; consecutive turns of one value count as one change.",
     "Select A with the arrow keys and press \u{1}more\u{1} a few times: the curve follows. \u{1}edit\u{1} types a value, with its unit where the preset has units.",
     "\u{1}pin\u{1} keeps the curve to compare the next ones with; \u{1}control\u{1} holds the force, or a spring, instead of the displacement.",
     "\u{1}go\u{1} and i shows the inside of the state: gap, pressure, energy; \u{1}go\u{1} and m how it depends on the values; \u{1}next-view\u{1} is the next chart; \u{1}cross-hair\u{1} reads numbers off it.",
@@ -168,7 +168,7 @@ fn reading(app: &App) -> Vec<HelpLine> {
         let style = if text.starts_with("! ") { theme.error() } else { Style::new() };
         HelpLine::new("  ", theme.text(&text), style)
     }));
-    section(&mut entries, theme, "Written short");
+    section(&mut entries, theme, "Abbreviations");
     entries.extend(SHORT.iter().map(|(short, text)| {
         let label = format!("  {:<1$}", theme.text(short), MEANING - 2);
         HelpLine::new(&label, theme.text(text), Style::new())
