@@ -37,36 +37,41 @@ pub(super) fn of_apart(problem: &FitProblem, solved: &SolvedFit, scatter: &Scatt
             ),
         ));
     }
-    if scatter.apart < FEWEST_APART {
-        reasons.extend(order(problem, solved));
-    }
+    reasons.extend(order(problem, solved));
     reasons.extend(levels(problem, solved, tau));
     reasons
 }
 
-/// Rows apart, too few to show how their noise is correlated, that follow each other as no noise does: by the mean square of their
-/// steps over their variance, 2 ± 2 √((n − 2)/(n² − 1)) for noise; J. von Neumann, Ann. Math. Stat. 12, 367 (1941).
+/// Rows apart that follow each other as no noise does. If they are too few to show how their noise is correlated: by the mean square
+/// of their steps over their variance, 2 ± 2 √((n − 2)/(n² − 1)) for noise; J. von Neumann, Ann. Math. Stat. 12, 367 (1941). If they
+/// are more: by a slope that makes up most of their variance.
 fn order(problem: &FitProblem, solved: &SolvedFit) -> Option<Reason> {
     /// One in a thousand, for a normal deviate on one side.
     const BEYOND: f64 = 3.09;
+    /// The share of the variance that a slope leaves.
+    const LEFT: f64 = 0.25;
     (0..problem.branches()).find_map(|branch| {
         let rows = problem.rows(solved, branch, true, 0);
         let n = rows.len() as f64;
-        let rest = detrended(&rows.iter().map(|row| row.residual).collect::<Vec<_>>());
-        let squares: f64 = rest.iter().map(|rest| rest * rest).sum();
+        let residuals: Vec<f64> = rows.iter().map(|row| row.residual).collect();
+        let mean = residuals.iter().sum::<f64>() / n;
+        let squares: f64 = residuals.iter().map(|residual| (residual - mean).powi(2)).sum();
         if rows.len() < FEWEST || squares <= ROUNDING * ROUNDING * n {
             return None;
         }
-        let steps: f64 = rest.windows(2).map(|pair| (pair[1] - pair[0]).powi(2)).sum();
+        let steps: f64 = residuals.windows(2).map(|pair| (pair[1] - pair[0]).powi(2)).sum();
         let ratio = steps / (n - 1.0) / (squares / n);
         let off = (2.0 - ratio) / (2.0 * ((n - 2.0) / (n * n - 1.0)).sqrt());
+        let left = || detrended(&residuals).iter().map(|rest| rest * rest).sum::<f64>();
+        let is_ordered =
+            if rows.len() < FEWEST_APART { off > BEYOND } else { left() < LEFT * squares };
         let sentence = format!(
             "the force is not constant where the bodies are apart: the {} there follow each other as noise seldom does \
              ({} standard deviations). It drifts, or they are in contact",
             counted(rows.len(), "row"),
             short(off, 2)
         );
-        (off > BEYOND).then(|| Reason::new("drift", off, sentence))
+        is_ordered.then(|| Reason::new("drift", off, sentence))
     })
 }
 

@@ -8,8 +8,8 @@
 //!
 //! v is 1/n for white noise. The second term removes what a fit of the same points takes out of a mean. False alarms,
 //! each for white noise on the right model: F 1 in 1000, the largest bin 1 in 1000, the scale 1 in 1000 (its limit from
-//! 20 000 simulated series of 8 to 300 rows), runs 1 in 1000. All of these leave outliers out: many of them side by side are
-//! rows that the curve misses.
+//! 20 000 simulated series of 8 to 300 rows), runs 1 in 1000. All of these leave outliers out: many of them, or some side by
+//! side, are rows that the curve misses.
 
 use super::super::chance::{beyond_f, beyond_t};
 use super::super::problem::{FitProblem, Target};
@@ -80,8 +80,29 @@ pub(super) fn of_contact(evidence: Evidence) -> Vec<Reason> {
     }
     if reasons.is_empty() {
         reasons.extend(of_ramps(evidence));
+        reasons.extend(of_many(evidence));
     }
     reasons
+}
+
+/// Outliers that are too many for disturbances.
+fn of_many(Evidence { problem, solved, .. }: Evidence) -> Option<Reason> {
+    /// The fewest of them, and one row in how many may be one.
+    const FEWEST: usize = 5;
+    const ONE_IN: usize = 5;
+    (0..problem.branches()).find_map(|branch| {
+        let rows = problem.in_order(solved, branch, false, 0);
+        let limit = outlier(&rows);
+        let off = rows.iter().filter(|row| row.residual.abs() > limit).count();
+        (off >= FEWEST && ONE_IN * off > rows.len()).then(|| {
+            let name = problem.data[rows[0].index].segment.name();
+            let sentence = format!(
+                "{off} of {} in contact on the {name} are outliers: more than disturbances are",
+                counted(rows.len(), "row")
+            );
+            Reason::new("outliers", off as f64, sentence)
+        })
+    })
 }
 
 /// Residuals that are smooth between jumps, as where the path jumps at other places than the points: with many jumps among few rows
