@@ -3,6 +3,7 @@
 
 use super::path::FitPath;
 use super::problem::{Datum, FitProblem, Target};
+use super::pulled::is_pulled;
 use crate::gap::Gap;
 use crate::measured::{Abscissa, Segment};
 use crate::preset::Preset;
@@ -14,9 +15,11 @@ const OFFSETS: usize = 288;
 /// How often the step between two offsets is halved around the best one.
 const HALVINGS: usize = 3;
 
-/// Whether a record in which no rows are apart may end anywhere on the curve of `preset`.
+/// Whether a record in which no rows are apart may end anywhere on the curve of `preset`. Paths at a rate, and of adhesion with a
+/// range, begin from the fit of one without: so many candidates of theirs would take too long.
 pub(super) fn may_end_early(preset: &Preset, data: &[Datum]) -> bool {
-    preset.gap.feature_length().is_some() && data.iter().all(|datum| !datum.free)
+    let is_quick = preset.cohesion().is_none() && !is_pulled(preset);
+    is_quick && preset.gap.feature_length().is_some() && data.iter().all(|datum| !datum.free)
 }
 
 impl FitProblem {

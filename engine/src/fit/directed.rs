@@ -154,6 +154,11 @@ fn of_all_in_contact(
 ) -> Option<Fit> {
     /// A fit that describes its points with a larger χ² per degree of freedom leaves much of them to outliers.
     const LARGE: f64 = 2.0;
+    let turned = match own {
+        Ok(own) => Some(own.turned),
+        Err(FitError::NoStart) => None,
+        Err(_) => return None,
+    };
     let own = match own {
         Ok(own) if own.verdict == Verdict::Describes => Some(own.chi_squared),
         _ => None,
@@ -167,15 +172,20 @@ fn of_all_in_contact(
     if apart == 0 {
         return None;
     }
-    let asked = Asked { free: FreePart::None, ..options.asked };
-    let options = Options { asked, ..options.clone() };
     let progress = ProgressPart::new(progress, [1.0, 1.0]);
-    let quick = directed(preset, points, &options.without_intervals(), &progress).ok()?;
-    let is_better = own.is_none_or(|own| LARGE * quick.chi_squared < own);
-    if quick.verdict != Verdict::Describes || !is_better {
-        return None;
-    }
-    let mut found = directed(preset, points, &options, &progress).ok()?;
+    let is_better = |quick: &Fit| {
+        quick.verdict == Verdict::Describes && own.is_none_or(|own| LARGE * quick.chi_squared < own)
+    };
+    // The jump that told which way the columns run is one between waves now.
+    let given = options.asked.turned;
+    let again = (given.is_none() && turned.is_some()).then_some(None);
+    let mut found = [given.or(turned)].into_iter().chain(again).find_map(|turned| {
+        let asked = Asked { free: FreePart::None, turned, ..options.asked };
+        let options = Options { asked, ..options.clone() };
+        let quick = directed(preset, points, &options.without_intervals(), &progress);
+        let quick = quick.ok().filter(&is_better);
+        quick.and_then(|_| directed(preset, points, &options, &progress).ok())
+    })?;
     found.preset.set(FREE_PART, "none".into()).ok()?;
     found.notes.push(format!(
         "{} that may look apart {} in contact, since only then does the model describe the points: data.free_part is none",

@@ -193,6 +193,15 @@ pub fn fit_models(
             let retraction = Value::Text(data::SEGMENTS[1].to_owned());
             laid.set(data::SEGMENT, retraction).map_err(|invalid| FitError::Data(invalid.to_string()))?;
         }
+        // All models have the same rows in contact.
+        if fits
+            .iter()
+            .filter_map(|fitted| fitted.fit.as_ref().ok())
+            .any(|fit| fit.preset.data.free_part == "none")
+        {
+            let none = Value::Text("none".to_owned());
+            laid.set(data::FREE_PART, none).map_err(|invalid| FitError::Data(invalid.to_string()))?;
+        }
         let mut options = Options { free: free.clone(), ..options.clone() };
         // The others are judged by the noise of the first.
         if let Some(first) = fits.iter().find_map(|fitted| fitted.fit.as_ref().ok())

@@ -227,6 +227,30 @@ fn a_fold_is_known_no_better_than_to_the_next_row() {
     assert!(described > 35 && square < 0.8 * f64::from(described), "{described}: {square}");
 }
 
+/// Neither the noise of so few rows nor their sizes tell a slope from a constant: their order does.
+#[test]
+fn few_rows_apart_with_a_slope_speak_against_the_fit() {
+    let whole = Body { state: &sphere(1.3, 0.02, 1.0), compliance: 0.0, most: 1.2 }.samples(200);
+    let is_described = |slope: f64| {
+        let (mut points, mut normal, mut apart) = (no_points(Abscissa::Approach), Normal::new(5), 0);
+        for (x, force) in whole.x.iter().zip(&whole.force).skip(100) {
+            let is_apart = force.abs() < 1e-300;
+            apart += usize::from(is_apart);
+            if apart <= 12 {
+                let drift = if is_apart { slope * apart as f64 } else { 0.0 };
+                points.x.push(*x);
+                points.force.push(force + drift + 1e-4 * normal.next());
+                points.segments.as_mut().unwrap().push(Segment::Retraction);
+            }
+        }
+        let fit = found(&points, &[E, W, OFFSET], "");
+        assert!((8..20).contains(&fit.rows.retraction.free), "{:?}", fit.rows);
+        fit.reasons.iter().all(|reason| reason.kind != "drift")
+    };
+    assert!(is_described(0.0));
+    assert!(!is_described(1e-3));
+}
+
 #[test]
 fn of_several_ends_the_nearest_to_all_rows_counts() {
     let points = Body { state: &sphere(1.3, 0.02, 1.0), compliance: 0.0, most: 1.2 }.samples(300);

@@ -17,6 +17,7 @@ use super::super::scatter::{ScatterRow, outlier};
 use super::super::verdict::Reason;
 use super::{Evidence, ROUNDING, runs};
 use crate::elementary::{hypot, ln};
+use crate::gap::Gap;
 use crate::measured::branches::median;
 use crate::measured::{Abscissa, Instrument, Segment};
 use crate::preset::edge::CLOSING_ADHESION;
@@ -106,11 +107,14 @@ fn of_many(Evidence { problem, solved, .. }: Evidence) -> Option<Reason> {
 }
 
 /// Residuals that are smooth between jumps, as where the path jumps at other places than the points: with many jumps among few rows
-/// all measures of the noise but medians take these for noise. A converter does the same within its steps.
+/// all measures of the noise but medians take these for noise. A converter of the force or of x does the same within its steps.
 fn of_ramps(Evidence { problem, solved, scatter, .. }: Evidence) -> Option<Reason> {
     /// The fewest rows, and the ratio of medians that white noise exceeds in one of ten thousand series of so many.
     const FEWEST: usize = 15;
     const RATIO: f64 = 6.0;
+    /// One row in so many may have the x of the row before, unless x is known in coarse steps.
+    const REPEATED: usize = 4;
+    problem.preset.gap.feature_length()?;
     (0..problem.branches()).find_map(|branch| {
         let rows = problem.in_order(solved, branch, false, 0);
         let differences = rows.windows(3).map(|three| {
@@ -119,7 +123,9 @@ fn of_ramps(Evidence { problem, solved, scatter, .. }: Evidence) -> Option<Reaso
         let typical = median(rows.iter().map(|row| row.residual.abs()).collect())?;
         let noise = median(differences.collect())? / scatter.correlation.of_differences().sqrt();
         let ratio = typical / noise.max(ROUNDING);
-        let is_of_converter = typical * problem.sigma[1] < problem.step;
+        let x = |row: &ScatterRow| problem.data[row.index].point.x;
+        let repeated = rows.windows(2).filter(|pair| x(&pair[0]).total_cmp(&x(&pair[1])).is_eq()).count();
+        let is_of_converter = typical * problem.sigma[1] < problem.step || REPEATED * repeated > rows.len();
         (rows.len() >= FEWEST && ratio > RATIO && !is_of_converter).then(|| {
             let sentence = format!(
                 "the model does not describe this: between jumps the residuals of the {} go on smoothly, and are {} times the \
