@@ -194,13 +194,10 @@ pub fn fit_models(
             laid.set(data::SEGMENT, retraction).map_err(|invalid| FitError::Data(invalid.to_string()))?;
         }
         // All models have the same rows in contact.
-        if fits
-            .iter()
-            .filter_map(|fitted| fitted.fit.as_ref().ok())
-            .any(|fit| fit.preset.data.free_part == "none")
-        {
-            let none = Value::Text("none".to_owned());
-            laid.set(data::FREE_PART, none).map_err(|invalid| FitError::Data(invalid.to_string()))?;
+        let mut done = fits.iter().filter_map(|fitted| fitted.fit.as_ref().ok());
+        if done.any(|fit| fit.preset.data.free_part == "none") {
+            laid.set(data::FREE_PART, "none".into())
+                .map_err(|invalid| FitError::Data(invalid.to_string()))?;
         }
         let mut options = Options { free: free.clone(), ..options.clone() };
         // The others are judged by the noise of the first.

@@ -218,9 +218,14 @@ impl FitProblem {
 /// mean, 2 for values without an order; J. von Neumann, Ann. Math. Stat. 12, 367 (1941).
 fn goes_on(values: &[f64]) -> bool {
     const MOST: f64 = 0.5;
+    steps_over_squares(values) < MOST
+}
+
+/// The sum of the squared steps from value to value over that of the squared distances from their mean.
+pub(super) fn steps_over_squares(values: &[f64]) -> f64 {
     let mean = values.iter().sum::<f64>() / values.len() as f64;
     let around: f64 = values.iter().map(|x| (x - mean).powi(2)).sum();
-    values.windows(2).map(|pair| (pair[1] - pair[0]).powi(2)).sum::<f64>() < MOST * around
+    values.windows(2).map(|pair| (pair[1] - pair[0]).powi(2)).sum::<f64>() / around
 }
 
 /// The values without their mean and without their slope over the order.

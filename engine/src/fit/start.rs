@@ -47,8 +47,8 @@ const ONE: f64 = 0.01;
 const OTHER: f64 = 0.2;
 /// Points at a larger mean distance, in σ, are not reached, whatever starts end there.
 pub(super) const REACHED: f64 = 2.0;
-/// Ends whose mean distance is larger by less than this factor are told apart by all rows only, if by them; and what few rows
-/// add to it, times their number.
+/// Ends whose mean distances differ by less than this factor, or by a share of less than `FEW` over the number of rows, are left
+/// to all rows, which may not tell them apart either.
 const AS_NEAR: f64 = 1.02;
 const FEW: f64 = 4.0;
 

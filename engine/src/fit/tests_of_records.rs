@@ -231,7 +231,7 @@ fn a_fold_is_known_no_better_than_to_the_next_row() {
 #[test]
 fn few_rows_apart_with_a_slope_speak_against_the_fit() {
     let whole = Body { state: &sphere(1.3, 0.02, 1.0), compliance: 0.0, most: 1.2 }.samples(200);
-    let is_described = |slope: f64| {
+    let is_constant = |slope: f64| {
         let (mut points, mut normal, mut apart) = (no_points(Abscissa::Approach), Normal::new(5), 0);
         for (x, force) in whole.x.iter().zip(&whole.force).skip(100) {
             let is_apart = force.abs() < 1e-300;
@@ -247,8 +247,25 @@ fn few_rows_apart_with_a_slope_speak_against_the_fit() {
         assert!((8..20).contains(&fit.rows.retraction.free), "{:?}", fit.rows);
         fit.reasons.iter().all(|reason| reason.kind != "drift")
     };
-    assert!(is_described(0.0));
-    assert!(!is_described(1e-3));
+    assert!(is_constant(0.0));
+    assert!(!is_constant(1e-3));
+}
+
+/// A robust fit goes through the other rows, and their noise alone speaks for it.
+#[test]
+fn outliers_in_more_than_one_row_of_five_speak_against_the_fit() {
+    let whole = Body { state: &sphere(1.3, 0.02, 1.0), compliance: 0.0, most: 1.2 }.samples(200);
+    let kinds = |one_in: usize| -> Vec<&str> {
+        let (mut points, mut normal) = (whole.clone(), Normal::new(6));
+        for (i, force) in points.force.iter_mut().enumerate() {
+            let side = if (i / one_in).is_multiple_of(2) { 1.0 } else { -1.0 };
+            let is_off = i % one_in == 0 && *force != 0.0;
+            *force += if is_off { 0.03 * side } else { 0.0 } + 1e-4 * normal.next();
+        }
+        found(&points, &[E, W, OFFSET], "").reasons.iter().map(|reason| reason.kind).collect()
+    };
+    assert_eq!(kinds(10), Vec::<&str>::new());
+    assert_eq!(kinds(4), ["outliers"]);
 }
 
 #[test]

@@ -4,7 +4,7 @@
 
 use super::super::chance::beyond_t;
 use super::super::problem::FitProblem;
-use super::super::scatter::{FEWEST_APART, Scatter, detrended};
+use super::super::scatter::{FEWEST_APART, Scatter, detrended, steps_over_squares};
 use super::super::solve::SolvedFit;
 use super::super::verdict::Reason;
 use super::ROUNDING;
@@ -42,10 +42,12 @@ pub(super) fn of_apart(problem: &FitProblem, solved: &SolvedFit, scatter: &Scatt
     reasons
 }
 
-/// Rows apart that follow each other as no noise does. If they are too few to show how their noise is correlated: by the mean square
-/// of their steps over their variance, 2 ± 2 √((n − 2)/(n² − 1)) for noise; J. von Neumann, Ann. Math. Stat. 12, 367 (1941). If they
-/// are more: by a slope that makes up most of their variance.
+/// Rows apart that follow each other as noise seldom does: by a slope that makes up most of their variance; or, if they are too few to
+/// show how their noise is correlated, by their steps, whose mean square over the variance is 2 ± 2 √((n − 2)/(n² − 1)) for noise;
+/// J. von Neumann, Ann. Math. Stat. 12, 367 (1941).
 fn order(problem: &FitProblem, solved: &SolvedFit) -> Option<Reason> {
+    /// The fewest rows.
+    const FEWEST: usize = 5;
     /// One in a thousand, for a normal deviate on one side.
     const BEYOND: f64 = 3.09;
     /// The share of the variance that a slope leaves.
@@ -59,19 +61,26 @@ fn order(problem: &FitProblem, solved: &SolvedFit) -> Option<Reason> {
         if rows.len() < FEWEST || squares <= ROUNDING * ROUNDING * n {
             return None;
         }
-        let steps: f64 = residuals.windows(2).map(|pair| (pair[1] - pair[0]).powi(2)).sum();
-        let ratio = steps / (n - 1.0) / (squares / n);
+        let rest: f64 = detrended(&residuals).iter().map(|rest| rest * rest).sum();
+        let left = (rest / squares).max(f64::EPSILON);
+        let t = ((1.0 - left) / left * (n - 2.0)).sqrt();
+        let has_slope = left < LEFT && beyond_t(t, n - 2.0) < FALSE_ALARM;
+        let ratio = steps_over_squares(&residuals) * n / (n - 1.0);
         let off = (2.0 - ratio) / (2.0 * ((n - 2.0) / (n * n - 1.0)).sqrt());
-        let left = || detrended(&residuals).iter().map(|rest| rest * rest).sum::<f64>();
-        let is_ordered =
-            if rows.len() < FEWEST_APART { off > BEYOND } else { left() < LEFT * squares };
-        let sentence = format!(
-            "the force is not constant where the bodies are apart: the {} there follow each other as noise seldom does \
-             ({} standard deviations). It drifts, or they are in contact",
-            counted(rows.len(), "row"),
-            short(off, 2)
-        );
-        is_ordered.then(|| Reason::new("drift", off, sentence))
+        let (is_ordered, value, by) = if has_slope {
+            (true, t, "standard errors of a slope")
+        } else {
+            (rows.len() < FEWEST_APART && off > BEYOND, off, "standard deviations")
+        };
+        is_ordered.then(|| {
+            let sentence = format!(
+                "the force is not constant where the bodies are apart: the {} there follow each other as noise seldom does \
+                 ({} {by}). It drifts, or they are in contact",
+                counted(rows.len(), "row"),
+                short(value, 2)
+            );
+            Reason::new("drift", value, sentence)
+        })
     })
 }
 
