@@ -126,6 +126,11 @@ impl<'a> Posed<'a> {
         let of_both = branches.abscissa == Abscissa::Radius && branches.noise.from[0] == Origin::Assumed;
         let least = of_neighbours
             .then_some([if of_both { problem.sigma[0] } else { f64::INFINITY }, FLOOR * branches.ranges[1]]);
+        // A fit that begins without noise of the radius ends far off, where the path is steep in it.
+        if let (true, Some([of_radius, of_force])) = (of_both && of_neighbours, branches.noise_in_order()) {
+            problem.sigma[0] = of_radius.max(problem.sigma[0]);
+            problem.sigma[1] = of_force.max(FLOOR * branches.ranges[1]);
+        }
         let part = ProgressPart::new(progress, [0.8, 0.85]);
         let solve = |problem: &mut FitProblem, u: &[f64]| last(problem, u, options.robust, least, &part);
         let found = |problem: &mut FitProblem| -> Result<_, FitError> {

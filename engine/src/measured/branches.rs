@@ -15,7 +15,7 @@ use super::converter::{Clipped, clipped, quantum, without_repeats};
 pub use super::free::MeasuredBranch;
 use super::free::{OrderedBranch, as_elsewhere, branch, clear, never_pulls, one_sided};
 pub(crate) use super::noise::median;
-use super::noise::{END_ROWS, range};
+use super::noise::{END_ROWS, range, scatter_over};
 pub use super::noise::{FLOOR, Noise, Origin};
 pub use super::points::MeasuredPoint;
 use super::points::{Abscissa, Points, Turned, turn};
@@ -72,7 +72,27 @@ impl Branches {
         SHARE * forces.fold(0.0, f64::max)
     }
 
-    /// The same without a last row or two that may lie behind a jump, where no rows are apart; a note says which.
+    /// σ of x and P in contact by the order of the rows, which is a clock if they were taken at even times: at least the noise of
+    /// each column. At most their scatter over each other, which has both. `None` of too few rows.
+    pub fn noise_in_order(&self) -> Option<[f64; 2]> {
+        let of = |branch: &MeasuredBranch| {
+            let mut points: Vec<&MeasuredPoint> = branch.attached.iter().collect();
+            let columns = |points: &[&MeasuredPoint]| -> [Vec<f64>; 2] {
+                [|point: &MeasuredPoint| point.x, |point: &MeasuredPoint| point.force]
+                    .map(|of| points.iter().map(|point| of(point)).collect())
+            };
+            let [x, force] = columns(&points);
+            let of_both = [scatter_over(&force, &x), scatter_over(&x, &force)];
+            points.sort_by_key(|point| point.at);
+            let count: Vec<f64> = (0..points.len()).map(|i| i as f64).collect();
+            let in_order = columns(&points).map(|column| scatter_over(&count, &column));
+            let least = |axis: usize| Some(in_order[axis]?.min(of_both[axis].unwrap_or(f64::INFINITY)));
+            Some([least(0)?, least(1)?])
+        };
+        self.list.iter().filter_map(of).reduce(|a, b| [a[0].min(b[0]), a[1].min(b[1])])
+    }
+
+    /// The branches without a last row or two that may lie behind a jump, where no rows are apart; a note says which.
     pub fn without_last(&self) -> Option<Self> {
         if self.baseline.is_some() || self.abscissa == Abscissa::Radius {
             return None;

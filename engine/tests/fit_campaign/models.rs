@@ -171,7 +171,7 @@ const APART: u32 = 40;
 /// A pull of a soft ball on glass, and a preset that knows its rate and device, with guesses for the rest.
 struct Pulled {
     peel: Peel,
-    text: String,
+    record: Record,
     preset: String,
 }
 
@@ -214,7 +214,7 @@ impl Pulled {
             peel.speed,
             1.1 * peel.begin
         );
-        Self { peel, text: record.text(), preset }
+        Self { peel, record, preset }
     }
 
     /// What is fitted: `free`, with the true values.
@@ -231,7 +231,7 @@ impl Pulled {
         if !free.contains(&"E*") {
             preset = preset.replace("effective_modulus = ", &format!("effective_modulus = {modulus:e} # "));
         }
-        Made { text: self.text.clone(), preset, free: free.to_vec(), truth: truth.collect() }
+        Made { text: self.record.text(), preset, free: free.to_vec(), truth: truth.collect() }
     }
 
     fn fitted(&self, free: &[&'static str]) -> Outcome {
@@ -285,6 +285,19 @@ fn the_laws_of_thirty_pulls_lie_within_their_errors() {
 fn the_laws_of_three_pulls_lie_within_their_errors() {
     let (_, off) = laws(Seen::Approach, 30..33);
     assert!(off < 0.01, "{off}");
+}
+
+#[test]
+fn the_law_of_radii_is_found_without_times_and_rows_apart() {
+    const ROWS: u32 = 300;
+    for number in 40..43 {
+        let mut pulled = Pulled::new(LENS, Seen::Radius, [f64::from(ROWS), 0.003], number);
+        pulled.record = pulled.record.kept(|i| i < ROWS as usize);
+        pulled.record.has_times = false;
+        pulled.preset.push_str("[data]\nbaseline = 0.0\n");
+        let found = pulled.fitted(&["gamma", "v0", "edge.exponent"]);
+        assert!(found.is_trusted() && found.off() < 4.0, "{found:#?}");
+    }
 }
 
 #[test]
