@@ -1,7 +1,10 @@
 //! The edge of the points in contact: how fast it moves at each.
 
+use super::super::distance::Nearest;
+use super::super::path::Foot;
 use super::super::problem::FitProblem;
 use crate::elementary::hypot;
+use crate::gap::Gap;
 use crate::measured::speed::{Speed, noise, speeds};
 use crate::measured::{Abscissa, Segment};
 
@@ -39,18 +42,28 @@ pub(super) struct EdgeMotion {
     pub(super) clock: Clock,
     /// Whether its branches are read from their ends.
     pub(super) is_backward: bool,
+    /// Whether its radii are measured; if not, they are those of the curve next to the points.
+    pub(super) is_measured: bool,
 }
 
 impl EdgeMotion {
     /// The edges in the retractions of `problem`, or in its approaches where it has no others, at the values `u`, by each clock
-    /// available: the column of times or, without one, all the others. Empty where radii are not measured.
+    /// available: the column of times or, without one, all the others. Where radii are not measured, those of the curve take their
+    /// place, if there are times and the radius has no jumps; otherwise there is nothing.
     pub(super) fn all(problem: &FitProblem, u: &[f64]) -> Vec<Self> {
-        if problem.abscissa != Abscissa::Radius && !problem.space {
-            return Vec::new();
-        }
         let (own, branches) = moving(problem);
-        if branches.iter().flatten().all(|i| problem.data[*i].point.time.is_finite()) {
-            return vec![Self::of(problem, own, Clock::Times, &|i| problem.data[i].point.time)];
+        let is_timed = branches.iter().flatten().all(|i| problem.data[*i].point.time.is_finite());
+        let by_time = |radii: &dyn Fn(usize) -> f64| {
+            Self::of(problem, own, Clock::Times, (&|i| problem.data[i].point.time, radii))
+        };
+        let measured = |i: usize| problem.radius(i);
+        if problem.abscissa != Abscissa::Radius && !problem.space {
+            let may = is_timed && problem.preset.gap.feature_length().is_none();
+            let radii = may.then(|| radii_of_curve(problem, u)).flatten();
+            return radii.map(|radii| by_time(&|i| radii[i])).into_iter().collect();
+        }
+        if is_timed {
+            return vec![by_time(&measured)];
         }
         // Rows without times may be listed by their radius: those of an approach may be a retraction, from its end.
         let segments: &[Segment] =
@@ -58,18 +71,26 @@ impl EdgeMotion {
         let way = approach(problem, u);
         let of = |segment: &Segment| {
             let (segment, back) = (*segment, if *segment == own { 1.0 } else { -1.0 });
-            let by_rows =
-                Self::of(problem, segment, Clock::Rows, &|i| back * problem.data[i].point.at as f64);
-            let by_way = way.as_ref().map(|way| {
-                Self::of(problem, segment, Clock::Approach, &|i| -sense(segment) * way(i).unwrap_or(f64::NAN))
-            });
+            let by = |clock: Clock, time: &dyn Fn(usize) -> f64| {
+                Self::of(problem, segment, clock, (time, &measured))
+            };
+            let by_rows = by(Clock::Rows, &|i| back * problem.data[i].point.at as f64);
+            let by_way = way
+                .as_ref()
+                .map(|way| by(Clock::Approach, &|i| -sense(segment) * way(i).unwrap_or(f64::NAN)));
             [Some(by_rows), by_way].into_iter().flatten()
         };
         segments.iter().flat_map(of).collect()
     }
 
-    /// The edge by a clock, its branches read as `segment`: from their ends if they are others.
-    fn of(problem: &FitProblem, segment: Segment, clock: Clock, time: &dyn Fn(usize) -> f64) -> Self {
+    /// The edge by a clock, with the time and the radius of each point, its branches read as `segment`: from their ends if they are
+    /// others.
+    fn of(
+        problem: &FitProblem,
+        segment: Segment,
+        clock: Clock,
+        (time, radius): (&dyn Fn(usize) -> f64, &dyn Fn(usize) -> f64),
+    ) -> Self {
         let count = problem.data.len();
         let (own, mut branches) = moving(problem);
         if segment != own {
@@ -83,11 +104,12 @@ impl EdgeMotion {
             segment,
             clock,
             is_backward: segment != own,
+            is_measured: problem.abscissa == Abscissa::Radius || problem.space,
         };
-        for rows in branches {
+        for rows in &mut branches {
+            rows.retain(|i| radius(*i).is_finite());
             let share = 1.0 / rows.len() as f64;
-            let (times, radii): (Vec<f64>, Vec<f64>) =
-                rows.iter().map(|i| (time(*i), problem.radius(*i))).unzip();
+            let (times, radii): (Vec<f64>, Vec<f64>) = rows.iter().map(|i| (time(*i), radius(*i))).unzip();
             let found = speeds(&times, &radii, noise(&times, &radii));
             for (number, (i, speed)) in rows.iter().zip(found).enumerate() {
                 edge.speeds[*i] = speed.map(|speed| Speed { value: -sense(segment) * speed.value, ..speed });
@@ -152,6 +174,17 @@ pub(super) fn moving(problem: &FitProblem) -> (Segment, Vec<Vec<usize>>) {
     } else {
         (Segment::Retraction, retractions)
     }
+}
+
+/// The contact radius of the curve next to each point; not a number on jumps, on lines and beside free points.
+pub(super) fn radii_of_curve(problem: &FitProblem, u: &[f64]) -> Option<Vec<f64>> {
+    let paths = problem.paths(u)?;
+    let feet = problem.feet(&paths, &problem.instrument_at(u))?;
+    let radius = |foot: Option<Nearest>| match foot {
+        Some(Nearest { foot: Foot::Radius(radius), .. }) => radius,
+        _ => f64::NAN,
+    };
+    Some(feet.into_iter().map(radius).collect())
 }
 
 /// δ of a row from its force and radius: at a held contact radius δ follows P as under a punch, with the stiffness

@@ -22,10 +22,12 @@ use super::super::track::Mover;
 use super::super::verdict::{Reason, UNTOLD};
 use super::Evidence;
 use super::edge::{EdgeMotion, moving};
-use super::scores::{MOST_OF_NEIGHBOURS, score};
+use super::scores::{MOST_OF_NEIGHBOURS, rest, score};
 use super::untold::untold;
 use crate::elementary::{ln, pow};
+use crate::measured::Segment;
 use crate::units::number::short;
+use nalgebra::DVector;
 
 /// The kinds of the reasons that are found here.
 pub(super) const KINDS: [&str; 2] = ["rate", UNTOLD];
@@ -41,23 +43,23 @@ const SLOWEST: f64 = 1.0 / 400.0;
 pub(super) fn of_rate(evidence: Evidence) -> Option<Reason> {
     let Evidence { problem, solved, .. } = evidence;
     let edges = EdgeMotion::all(problem, &solved.minimum.parameters);
-    let tested: Vec<(&EdgeMotion, [[f64; 2]; 2])> =
+    let tested: Vec<(&EdgeMotion, TestedGrowth)> =
         edges.iter().filter_map(|edge| Some((edge, tested(evidence, edge)?))).collect();
     // The speed by each clock and, where none is a column of times, the number of the row.
     let tests = if edges.iter().any(EdgeMotion::is_timed) { 1.0 } else { 1.0 + edges.len() as f64 };
-    let found = tested.iter().find_map(|(edge, tested)| grows(evidence, edge, (*tested, tests)));
+    let found = tested.iter().find_map(|(edge, tested)| grows(evidence, edge, (tested, tests)));
     // What a fit takes up of a law by one clock is left in the law by another, or by the number of the row. That rows are
     // listed from their end is told only where it is found: as a doubt it would hang over every approach.
     let tested: Vec<_> = tested.into_iter().filter(|(edge, _)| !edge.is_backward).collect();
-    let all = tested.iter().flat_map(|(edge, [[_, by_speed], [_, by_row]])| {
-        [*by_speed, if edge.tells_by_row() { *by_row } else { f64::NEG_INFINITY }]
+    let all = tested.iter().flat_map(|(edge, TestedGrowth { by_speed, by_row, .. })| {
+        [by_speed[1], if edge.tells_by_row() { by_row[1] } else { f64::NEG_INFINITY }]
     });
     let lean = all.fold(f64::NEG_INFINITY, f64::max);
     found.or_else(|| {
         tested.iter().find_map(|(edge, _)| {
             // Without times nothing says that the edge moves at all: where the points do not lean to it, that is a
             // doubt and not a reason.
-            let may = edge.is_timed() || lean >= LEANING;
+            let may = edge.is_measured && (edge.is_timed() || lean >= LEANING);
             may.then(|| untold(evidence, edge, lean)).flatten()
         })
     })
@@ -72,8 +74,17 @@ pub(super) fn of_untimed(evidence: Evidence) -> Option<String> {
     Some(format!("there is no column of times: {}", reason.sentence))
 }
 
-/// n and t of the speed, and of the number of the row.
-fn tested(evidence: Evidence, edge: &EdgeMotion) -> Option<[[f64; 2]; 2]> {
+/// n and t of the speed, and of the number of the row; and whether a law with that n of the speed comes near the points.
+struct TestedGrowth {
+    by_speed: [f64; 2],
+    by_row: [f64; 2],
+    is_near: bool,
+}
+
+/// The test of an edge; `None` where nothing moves, or where the values are not determined.
+fn tested(evidence: Evidence, edge: &EdgeMotion) -> Option<TestedGrowth> {
+    /// A law that leaves more than this many times the noise is not near the points.
+    const WELL: f64 = 2.0;
     let Evidence { problem, solved, scatter, inner } = evidence;
     let mut alone = vec![false; problem.per_point() * problem.data.len()];
     for rows in moving(problem).1 {
@@ -85,14 +96,15 @@ fn tested(evidence: Evidence, edge: &EdgeMotion) -> Option<[[f64; 2]; 2]> {
         return None;
     }
     let u = &solved.minimum.parameters;
-    let of = |share: &dyn Fn(usize) -> f64| {
-        let z = problem.changed(u, Mover::Adhesion, share)?;
-        // A law that the values take up completely says nothing.
-        Some(score(evidence, &z, Some(&alone)).unwrap_or([0.0; 2]))
-    };
+    // A law that the values take up completely says nothing.
+    let of = |z: &DVector<f64>| score(evidence, z, Some(&alone)).unwrap_or([0.0; 2]);
     let by_speed =
-        of(&|i| edge.speed(i).map_or(0.0, |speed| edge.sense() * ln((speed / most).max(SLOWEST))))?;
-    Some([by_speed, of(&|i| edge.sense() * edge.order[i].sqrt())?])
+        |i: usize| edge.speed(i).map_or(0.0, |speed| edge.sense() * ln((speed / most).max(SLOWEST)));
+    let by_speed = problem.changed(u, Mover::Adhesion, by_speed)?;
+    let by_row = problem.changed(u, Mover::Adhesion, |i| edge.sense() * edge.order[i].sqrt())?;
+    let found = of(&by_speed);
+    let is_near = rest(evidence, &by_speed, found[0]).is_some_and(|rest| rest <= WELL);
+    Some(TestedGrowth { by_speed: found, by_row: of(&by_row), is_near })
 }
 
 /// A work of adhesion that grows with the speed of the edge or, where no column has the times, with the number of the
@@ -100,7 +112,7 @@ fn tested(evidence: Evidence, edge: &EdgeMotion) -> Option<[[f64; 2]; 2]> {
 fn grows(
     Evidence { problem, scatter, .. }: Evidence,
     edge: &EdgeMotion,
-    ([by_speed, by_row], tests): ([[f64; 2]; 2], f64),
+    (&TestedGrowth { by_speed, by_row, is_near }, tests): (&TestedGrowth, f64),
 ) -> Option<Reason> {
     let is_found = |[n, t]: [f64; 2]| n > 0.0 && tests * 0.5 * beyond_t(t, scatter.degrees) < FALSE_ALARM;
     if is_found(by_speed) {
@@ -111,14 +123,25 @@ fn grows(
         let from_end =
             if edge.is_backward { ", if the rows are those of a retraction from its end" } else { "" };
         let times = pow((least / most).max(SLOWEST), -edge.sense() * n.min(1.0));
+        // Near 1 it is the part beyond 1 that counts.
+        let times = if (times - 1.0).abs() < 0.1 { format!("{times:.3}") } else { short(times, 2) };
+        // One step from values that are far off says nothing of how large the law is.
+        let size = if is_near {
+            format!(": that of the fastest rows is about {times} times that of the slowest")
+        } else {
+            String::new()
+        };
+        let how = if is_near || edge.segment == Segment::Approach {
+            ""
+        } else {
+            ". --model rate fits one, with how much it grows"
+        };
         let sentence = format!(
-            "a work of adhesion that {} with the speed of the {} describes the points better{}{from_end}: that of the fastest \
-             rows is about {} times that of the slowest ({} standard errors). No quasi-static curve has such an edge",
+            "a work of adhesion that {} with the speed of the {} describes the points better{}{from_end}{size} ({} standard errors). \
+             No quasi-static curve has such an edge{how}",
             edge.verb(),
             edge.noun(),
             edge.clock.condition(),
-            // Near 1 it is the part beyond 1 that counts.
-            if (times - 1.0).abs() < 0.1 { format!("{times:.3}") } else { short(times, 2) },
             short(t, 2)
         );
         return Some(Reason::new("rate", n, sentence));

@@ -23,6 +23,7 @@ use crate::measured::branches::median;
 use crate::measured::{Abscissa, Segment};
 use crate::preset::edge::CLOSING_ADHESION;
 use crate::problem::Groups;
+use crate::problem::groups::LARGE_TABOR;
 use crate::units::Quantity;
 use crate::units::number::{said, short};
 use nalgebra::DVector;
@@ -49,7 +50,7 @@ fn parted(
 }
 
 /// The typical size of the residuals that change by `z` after a change by n, in units of the noise of neighbours.
-fn rest(evidence: Evidence, z: &DVector<f64>, n: f64) -> Option<f64> {
+pub(super) fn rest(evidence: Evidence, z: &DVector<f64>, n: f64) -> Option<f64> {
     let (_, across) = parted(evidence, z)?;
     let left = &evidence.solved.minimum.at.residuals + across * n;
     let sizes = left.iter().zip(z).filter(|(_, z)| **z != 0.0).map(|(left, _)| left.abs());
@@ -176,6 +177,10 @@ pub(super) fn of_range(evidence: Evidence) -> Option<Reason> {
             Some(rest) => format!(
                 "But {} times the noise would be left. A gap with waves that the preset does not have looks the same",
                 short(rest, 2)
+            ),
+            None if tabor >= LARGE_TABOR => format!(
+                "So short a range (mu above {LARGE_TABOR}) changes little: more likely something else depends on the radius or the speed \
+                 of the edge"
             ),
             None => "The JKR limit of this method does not hold".to_owned(),
         };
