@@ -50,6 +50,7 @@ impl Background for FitOutcome {
     type Key = Preset;
     const NAME: &'static str = "fit";
     const CHANGES_VALUES: bool = true;
+    const ONLY_NEWEST: bool = true;
 
     /// Requested by a command; once it is done, it is no longer wanted.
     fn wanted(model: &Model) -> Want<Preset> {
@@ -73,8 +74,23 @@ impl Background for FitOutcome {
     }
 
     fn came(model: &mut Model, found: Arc<Self>) -> Vec<Effect> {
-        if asked::<Self>(model) != Some(&model.preset) {
-            return model.refuse("the values changed while the fit ran: its result is discarded");
+        let of = asked::<Self>(model);
+        if of != Some(&model.preset) {
+            return match &found.0 {
+                _ if of.is_none() || of != model.fitted_from.as_ref() => {
+                    model.refuse("the values changed while the fit ran: its result is discarded")
+                }
+                Ok(again) if again.holds_for(&model.preset) => {
+                    model.fit = Some(Arc::clone(again));
+                    model.tell(
+                        Level::Info,
+                        format!("the errors and the report of the fit are back: {}", told(again)),
+                    );
+                    Vec::new()
+                }
+                _ => model
+                    .refuse(format!("the fit does not lead to these values again: {} fits", Id::Fit.named())),
+            };
         }
         match &found.0 {
             Ok(found) => taken(model, found),
@@ -91,9 +107,11 @@ impl Background for FitOutcome {
     }
 }
 
-/// Requests a fit of the present values; a fit under way ends with the best result so far.
+/// Requests a fit of the present values; one of them that is under way ends with the best result so far.
 pub(super) fn fit(model: &mut Model) -> Vec<Effect> {
-    if let Some(stops) = stop::<FitOutcome>(model) {
+    if let Some(stops) =
+        stop::<FitOutcome>(model).filter(|_| asked::<FitOutcome>(model) == Some(&model.preset))
+    {
         return vec![stops];
     }
     if model.preset.data.source.is_some() && model.preset.data.free().next().is_none() {
@@ -102,6 +120,12 @@ pub(super) fn fit(model: &mut Model) -> Vec<Effect> {
     }
     let preset = model.preset.clone();
     vec![ask::<FitOutcome>(model, preset)]
+}
+
+/// Requests the fit from `from` again, which led to the values of a session that is resumed: its errors and its report.
+pub(super) fn fit_again(model: &mut Model, from: Preset) -> Effect {
+    model.fitted_from = Some(from.clone());
+    ask::<FitOutcome>(model, from)
 }
 
 /// Adopts what a fit found.
@@ -114,6 +138,7 @@ fn taken(model: &mut Model, found: &Arc<Fit>) -> Vec<Effect> {
     }
     model.tell(if found.verdict == Verdict::Describes { Level::Info } else { Level::Error }, told(found));
     model.fit = Some(Arc::clone(found));
+    model.fitted_from = Some(model.preset.clone());
     change(model, found.preset.clone())
 }
 
@@ -151,6 +176,12 @@ impl Model {
     /// The last fit that was adopted, if the present values are still its values.
     pub fn fitted(&self) -> Option<&Fit> {
         self.fit.as_deref().filter(|fit| fit.holds_for(&self.preset))
+    }
+
+    /// Whether the fit that led to the values of a resumed session is under way again.
+    pub fn is_fitting_again(&self) -> bool {
+        let asked = asked::<FitOutcome>(self).filter(|_| self.results.under_way::<FitOutcome>().is_some());
+        asked.is_some_and(|asked| *asked != self.preset && Some(asked) == self.fitted_from.as_ref())
     }
 
     /// What it found, in one line.

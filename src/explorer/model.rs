@@ -144,6 +144,8 @@ pub struct Model {
     pub(super) retitled: Option<[String; 2]>,
     /// The last fit that was adopted; the values may have changed since.
     pub fit: Option<Arc<Fit>>,
+    /// The values from which it began, or will begin again.
+    pub fitted_from: Option<Preset>,
     /// The quantity being studied.
     pub studied: QuantityColumn,
     /// The range it is studied over while its key is selected; `None` for the usual one.
@@ -251,6 +253,7 @@ impl Model {
             map_axes: None,
             retitled: None,
             fit: None,
+            fitted_from: None,
             studied: QuantityColumn { quantity: &QUANTITIES[0], under: Under::Own },
             studied_over: None,
             stiffness,

@@ -5,7 +5,7 @@
 use crate::support::session::Session;
 use pulloff::explorer::export::Export;
 use pulloff::explorer::fit::FittedError;
-use pulloff::explorer::model::Question;
+use pulloff::explorer::model::{Model, Question};
 use pulloff::explorer::script::parse;
 use pulloff::explorer::session::{Document, Ended, Snapshot};
 use pulloff::explorer::{Command, Id, View};
@@ -161,12 +161,25 @@ fn a_fit_changes_the_free_keys_as_one_command_and_says_their_errors() {
     session.does(Id::Fit);
     assert!(session.status().starts_with("fitted: χ² "), "{}", session.status());
     let value = |session: &Session, key: &str| session.model.preset.get(key).unwrap().as_number().unwrap();
-    // A session keeps the values, and says that their errors are gone.
-    let document = Document::new(&Snapshot::of(&session.model), Ended::Quit, 0).json().unwrap();
-    let (model, _) = Document::read(&document).unwrap().snapshot().unwrap().resume(None);
-    assert!(model.preset == session.model.preset && model.fitted().is_none());
-    assert!(model.message.unwrap().1.contains("errors and report were not kept"));
+    // A session that is resumed repeats the fit, and then has its errors and its report; so does one that ends before that.
     let (modulus, adhesion) = ("material.effective_modulus", "material.work_of_adhesion");
+    let resumed = |model: &Model| {
+        let document = Document::new(&Snapshot::of(model), Ended::Quit, 0).json().unwrap();
+        Document::read(&document).unwrap().snapshot().unwrap().resume(None)
+    };
+    let (model, _) = resumed(&session.model);
+    assert!(model.preset == session.model.preset && model.fitted().is_none() && model.is_fitting_again());
+    let (mut model, effects) = resumed(&model);
+    session.driver.settle(&mut model, effects);
+    assert!(
+        model
+            .message
+            .as_ref()
+            .is_some_and(|(_, said)| said.contains("errors and the report of the fit are back"))
+    );
+    assert!(model.preset == session.model.preset && !model.is_fitting_again());
+    assert_eq!(model.fitted_error(modulus), session.model.fitted_error(modulus));
+    assert!(model.fitted_error(modulus).is_some());
     for (key, truth) in [(modulus, 1e6), (adhesion, 0.05), (data::OFFSET, 12.3e-6), (data::BASELINE, 4e-6)] {
         let (found, error) = (value(&session, key), known_to(&session, key));
         assert!((found - truth).abs() < 4.0 * error && error < 0.05 * truth, "{key}: {found} ± {error}");

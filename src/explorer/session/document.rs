@@ -68,7 +68,9 @@ pub struct Document {
     look: SessionLook,
     pins: Vec<(usize, usize)>,
     journal: KeptJournal<usize>,
-    fitted: bool,
+    /// The number of the preset from which the values were fitted.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    fitted_from: Option<usize>,
     problems: Problems,
     settled: bool,
     cursor: Option<usize>,
@@ -83,6 +85,7 @@ impl Document {
         let mut problems = Collector::default();
         let preset = problems.preset(&snapshot.preset);
         let saved = problems.preset(&snapshot.saved);
+        let fitted_from = snapshot.fitted_from.as_ref().map(|preset| problems.preset(preset));
         let pins = snapshot.pins.iter().map(|(number, preset)| (*number, problems.preset(preset))).collect();
         let Ok(journal) = snapshot.journal.map(|preset| Ok::<_, Infallible>(problems.preset(preset)));
         let nodes = tree::nodes(&snapshot.history, |setting| problems.setting(setting));
@@ -108,7 +111,7 @@ impl Document {
             look: snapshot.look.clone(),
             pins,
             journal,
-            fitted: snapshot.fitted,
+            fitted_from,
             problems: problems.finish(),
             settled: snapshot.settled,
             cursor: snapshot.history.cursor(),
@@ -188,7 +191,7 @@ impl Document {
             pins: pins.collect::<Result<_, Unreadable>>()?,
             look: self.look,
             journal,
-            fitted: self.fitted,
+            fitted_from: self.fitted_from.map(preset).transpose()?,
         })
     }
 }

@@ -1,12 +1,13 @@
 //! What is kept of a model, and the model restored from it.
 
 use crate::explorer::backgrounds::want_all;
-use crate::explorer::command::{FIRST_LENGTH, Id, LENGTHS};
+use crate::explorer::command::{FIRST_LENGTH, LENGTHS};
 use crate::explorer::effect::Effect;
+use crate::explorer::fit::fit_again;
 use crate::explorer::history::History;
 use crate::explorer::journal::{Journal, KeptJournal};
 use crate::explorer::map_axes::MapAxes;
-use crate::explorer::model::{Level, Model};
+use crate::explorer::model::Model;
 use crate::explorer::pins::Pins;
 use crate::explorer::requests::want_curve;
 use crate::explorer::undo::Undo;
@@ -34,8 +35,8 @@ pub struct Snapshot {
     pub pins: Vec<(usize, Preset)>,
     pub look: SessionLook,
     pub journal: KeptJournal,
-    /// Whether the values are those of a fit, whose report and errors are not kept.
-    pub fitted: bool,
+    /// Where the fit began whose values these are: its errors and report are found again from there.
+    pub fitted_from: Option<Preset>,
 }
 
 /// How a session is displayed and walked; the fields are as in [`Model`].
@@ -123,7 +124,10 @@ impl Snapshot {
             pins: model.pins.presets().map(|(number, preset)| (number, preset.clone())).collect(),
             look: SessionLook::of(model),
             journal: model.journal.kept().clone(),
-            fitted: model.fitted().is_some(),
+            fitted_from: model
+                .fitted_from
+                .clone()
+                .filter(|_| model.fitted().is_some() || model.is_fitting_again()),
         }
     }
 
@@ -137,7 +141,8 @@ impl Snapshot {
     pub fn is_like(&self, other: &Self) -> bool {
         self.session == other.session
             && self.history.revision() == other.history.revision()
-            && (&self.look, self.settled, self.fitted) == (&other.look, other.settled, other.fitted)
+            && (&self.look, self.settled) == (&other.look, other.settled)
+            && self.fitted_from == other.fitted_from
             && (&self.source, self.fingerprint) == (&other.source, other.fingerprint)
             && (&self.preset, &self.saved, &self.pins) == (&other.preset, &other.saved, &other.pins)
             && self.journal == other.journal
@@ -169,10 +174,6 @@ impl Snapshot {
         (model.history, model.undo) = (self.history, self.undo);
         model.journal = Journal::of(self.journal);
         model.is_tried = self.settled;
-        if self.fitted {
-            let text = format!("the fit's errors and report were not kept: {} fits again", Id::Fit.named());
-            model.tell(Level::Info, text);
-        }
         self.look.lay_over(&mut model);
         if let Control::Stiffness(k) = model.preset.path.control {
             model.stiffness = Some(k);
@@ -183,6 +184,7 @@ impl Snapshot {
         let mut effects = vec![want_curve(&mut model)];
         model.pins = Pins::awaiting(self.pins);
         effects.extend(want_all(&mut model));
+        effects.extend(self.fitted_from.map(|from| fit_again(&mut model, from)));
         (model, effects)
     }
 }

@@ -3,7 +3,7 @@
 use thiserror::Error;
 
 /// The version of the format; anything added without a new version has a default.
-pub const FORMAT: u32 = 7;
+pub const FORMAT: u32 = 8;
 
 /// Why a document is not a session of this program.
 #[derive(Debug, Clone, PartialEq, Eq, Error)]
