@@ -94,7 +94,20 @@ fn of_row(times: &[f64], values: &[f64], sigma: f64, at: usize, widest: usize) -
         // The third derivative bends a speed with the square of the width. At an end nothing shows how it goes on.
         if is_inside { beyond * own / (other - own) } else { beyond }
     });
+    let bias = if is_inside { bias } else { bias.max(bent(times, values, sigma, at)) };
     Some(Speed { error: (found.error * found.error + bias * bias).sqrt(), ..found })
+}
+
+/// By how much the speed changes from before the row `at` to after it, or next to it at an end, beyond what the noise may explain:
+/// the last rows before the bodies come apart have no wider window that shows it.
+fn bent(times: &[f64], values: &[f64], sigma: f64, at: usize) -> f64 {
+    let at = at.clamp(1, values.len() - 2);
+    let ways = [times[at] - times[at - 1], times[at + 1] - times[at]];
+    let bend = ((values[at + 1] - values[at]) / ways[1] - (values[at] - values[at - 1]) / ways[0]).abs();
+    let noise =
+        sigma * (ways[0].powi(-2) + ways[1].powi(-2) + (1.0 / ways[0] + 1.0 / ways[1]).powi(2)).sqrt();
+    let beyond = (bend - AGREE * noise).max(0.0);
+    if beyond.is_finite() { beyond } else { 0.0 }
 }
 
 /// By how much the speed in a wider window differs beyond what the noise may explain.

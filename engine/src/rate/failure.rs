@@ -22,6 +22,8 @@ const TOLERANCE: f64 = 1e-10;
 /// narrower the bottleneck.
 const DEEPEST: u32 = 60;
 const INTERVALS: usize = 200_000;
+/// A load beyond one that is borne by no more than this share is borne: the two are the same but for rounding.
+const ROUNDING: f64 = 1e-12;
 /// The edge is gone at this share of the radius at which it starts; it passes the rest in no time.
 const GONE: f64 = 1e-9;
 
@@ -44,7 +46,7 @@ pub fn time_to_failure(
     let least = inside.clone().filter(|limit| limit.turn == Extremum::Minimum).map(|limit| limit.force);
     let borne =
         least.fold(HeldDisc::equilibrium(panels, Control::Force, edge.opening, start).min(0.0), f64::min);
-    if force >= borne {
+    if force >= borne * (1.0 + ROUNDING) {
         return Ok(None);
     }
     let branch = edge.law.of(Motion::Opening);
@@ -58,7 +60,7 @@ pub fn time_to_failure(
     borders.sort_by(f64::total_cmp);
     let mut sum = 0.0;
     for pair in borders.windows(2) {
-        sum += integral(&slowness, [pair[0], pair[1]]).ok_or(RateError::Lost { contact_radius: pair[0] })?;
+        sum += integral(&slowness, [pair[0], pair[1]]).ok_or(RateError::Lost { contact_radius: pair[1] })?;
     }
     Ok(Some(sum))
 }

@@ -153,6 +153,8 @@ fn a_dead_load_is_borne_as_long_as_the_law_says() {
         let edge = MovingEdge { law: EdgeLaw::symmetric(exponent), opening: GAMMA, closing: GAMMA };
         let borne = super::failure::time_to_failure(&panels, &edge, start, -0.999 * critical).unwrap();
         assert_eq!(borne, None);
+        let exactly = super::failure::time_to_failure(&panels, &edge, start, -critical * (1.0 + 2e-15));
+        assert_eq!(exactly, Ok(None), "the largest load that is borne, but for rounding");
         for (over, ratio) in near.into_iter().zip(ratios) {
             let force = -critical * (1.0 + over);
             let time = super::failure::time_to_failure(&panels, &edge, start, force).unwrap().unwrap();
