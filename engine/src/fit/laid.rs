@@ -6,7 +6,7 @@ use super::uncertain::{uncertain, written};
 use crate::elementary::{log10, pow};
 use crate::measured::{Instrument, Segment};
 use crate::preset::data::{BASELINE, OFFSET, TILT};
-use crate::preset::{Preset, Value, edge};
+use crate::preset::{BasisSpec, Preset, Value, edge};
 use crate::problem::Start;
 use crate::units::Quantity;
 use crate::units::number::said;
@@ -23,6 +23,8 @@ pub(super) fn laid(
     notes: &mut Vec<String>,
 ) -> Preset {
     let mut laid = preset.clone();
+    // Its curve is the one that was fitted.
+    laid.basis = BasisSpec::Exact;
     // What was known before stays so: the next fit has the same points, which must count once.
     let known = uncertain(preset, problem.abscissa, &preset.data.uncertain).unwrap_or_default();
     let known: Vec<String> = problem

@@ -9,6 +9,7 @@ use crate::cli::measured::{ReadingArguments, attach, own, typed};
 use crate::cli::output::{Destination, Inputs, OUTPUT, OutputSink, Outputs, shown};
 use crate::cli::problem::Changes;
 use crate::cli::{Failure, measured, problem};
+use crate::store::atomic::folder_of;
 use crate::store::hash::sha256;
 use crate::store::{Loaded, stream};
 use clap::builder::{PossibleValuesParser, TypedValueParser};
@@ -186,6 +187,14 @@ pub(super) fn refused(path: &Path, preset: &Preset, error: &FitError) -> Failure
 }
 
 impl FitArguments {
+    /// The text of a fitted preset, placed beside its output, with the keys that were free: it can be fitted again as it is.
+    pub(super) fn fitted(&self, found: &Preset, free: &[String]) -> Result<String, Failure> {
+        let mut preset = found.placed_in(folder_of(self.destination.path()));
+        let free = Value::Text(free.join(","));
+        preset.set(data::FREE, free).map_err(|invalid| Failure::Usage(invalid.to_string()))?;
+        Ok(write(&preset))
+    }
+
     /// Reads the files, the preset and the options.
     pub(super) fn read(&self, console: &Console) -> Result<(Vec<PathBuf>, Loaded, Options), Failure> {
         let (preset, mut files) = measured::apart(&self.paths)?;

@@ -8,9 +8,7 @@ use crate::cli::format::Format;
 use crate::cli::watch::StopSignal;
 use crate::cli::{Failure, Status};
 use crate::store::Loaded;
-use crate::store::atomic::folder_of;
 use pulloff_engine::fit::{Models, Verdict};
-use pulloff_engine::preset::{Value, data, write};
 use pulloff_engine::report::{FitReport, ModelsReport, SCHEMA, json, residuals};
 use pulloff_engine::text::show_path;
 use std::path::{Path, PathBuf};
@@ -74,10 +72,7 @@ impl<'a> FinishedFits<'a> {
             sink.write(residuals::csv(&report.residuals))?;
         }
         if let Some(sink) = &self.sinks.fitted {
-            let mut preset = found.preset.placed_in(folder_of(arguments.destination.path()));
-            let free = Value::Text(free.join(","));
-            preset.set(data::FREE, free).map_err(|invalid| Failure::Usage(invalid.to_string()))?;
-            sink.write(write(&preset))?;
+            sink.write(arguments.fitted(&found.preset, free)?)?;
         }
         self.worst = self.worst.max(status_of(report.verdict.word()));
         self.reports.push(report);

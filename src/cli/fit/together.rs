@@ -8,9 +8,8 @@ use crate::cli::console::Console;
 use crate::cli::format::Format;
 use crate::cli::watch::StopSignal;
 use crate::store::Loaded;
-use crate::store::atomic::folder_of;
 use pulloff_engine::fit::{Options, fit_together};
-use pulloff_engine::preset::{Preset, Value, write};
+use pulloff_engine::preset::{Preset, Value};
 use pulloff_engine::report::{FitReport, TogetherReport, json};
 use pulloff_engine::text::show_path;
 use std::path::PathBuf;
@@ -58,7 +57,7 @@ pub(super) fn run(
         }
     })?;
     if let Some(sink) = &sinks.fitted {
-        sink.write(write(&found.preset.placed_in(folder_of(arguments.destination.path()))))?;
+        sink.write(arguments.fitted(&found.preset, &options.free)?)?;
     }
     stopped("stopped: the result has the best values so far")?;
     ended(status_of(report.verdict.word()), arguments.accept, console)
