@@ -110,6 +110,8 @@ fn screen() -> String {
         let effects = update(&mut app.model, id.into());
         driver.settle(&mut app.model, effects);
     }
+    // Both charts of the curve, as the terminal has room for them.
+    app.model.views = 2;
     let mut terminal = Terminal::new(TestBackend::new(80, 24)).unwrap();
     terminal
         .draw(|frame| {

@@ -13,7 +13,7 @@ use crate::measured::asked::FreePart;
 use crate::measured::asked::signs_text;
 use crate::measured::points::Turned;
 use crate::measured::{Asked, Branches, Points};
-use crate::preset::data::{COLUMNS, FREE_PART};
+use crate::preset::data::{COLUMNS, FREE_PART, SIGNS};
 use crate::preset::edge::CLOSING_ADHESION;
 use crate::preset::{OtherReading, Preset};
 use crate::progress::{Progress, ProgressPart};
@@ -23,6 +23,9 @@ use crate::units::number::{said, short};
 
 /// A direction is the better one if its χ² is smaller by this much.
 const CLEAR: f64 = 20.0;
+
+/// More rows than this stand still on no wave: they are apart.
+const FEW_APART: usize = 20;
 
 /// Fits the free keys of `preset` to its own measured curve, as [`fit`] does.
 ///
@@ -118,8 +121,8 @@ pub fn fit(
     options: &Options,
     progress: &dyn Progress,
 ) -> Result<Fit, FitError> {
-    let found = directed(preset, points, options, progress);
-    let mut found = match of_all_in_contact(preset, points, (options, &found), progress) {
+    let mut found = directed(preset, points, options, progress);
+    let mut found = match of_all_in_contact(preset, points, (options, &mut found), progress) {
         Some(found) => found,
         None => found?,
     };
@@ -144,14 +147,37 @@ pub fn fit(
     Ok(found)
 }
 
-/// The fit with all rows in contact, where only that describes them: on waves a record that ends in contact may look as if it
-/// ended apart.
+/// `preset` with all rows of its curve in contact, where few look apart on waves and its own fit finds that they are not.
+pub(super) fn with_contact(preset: &Preset, options: &Options, progress: &dyn Progress) -> Preset {
+    let may = || {
+        let branches = branches_of(preset, options).ok()?;
+        let apart: usize = branches.list.iter().map(|branch| branch.free.len()).sum();
+        (1..=FEW_APART).contains(&apart).then_some(())
+    };
+    let alone = || {
+        preset.gap.feature_length()?;
+        may()?;
+        let found = fit_own(preset, &options.without_intervals(), progress).ok()?;
+        let is_found =
+            found.verdict == Verdict::Describes && found.preset.data.free_part != preset.data.free_part;
+        let mut with = preset.clone();
+        with.set(SIGNS, signs_text(found.turned).as_str().into()).ok()?;
+        with.set(FREE_PART, found.preset.data.free_part.as_str().into()).ok()?;
+        is_found.then_some(with)
+    };
+    alone().unwrap_or_else(|| preset.clone())
+}
+
+/// The fit with all rows in contact, where only that describes them, or better: on waves a record that ends in contact may look as
+/// if it ended apart. Where both describe the points as well, with other values, those of `own` are not determined.
 fn of_all_in_contact(
     preset: &Preset,
     points: &Points,
-    (options, own): (&Options, &Result<Fit, FitError>),
+    (options, own): (&Options, &mut Result<Fit, FitError>),
     progress: &dyn Progress,
 ) -> Option<Fit> {
+    /// By how much χ² is smaller where that tells one from the other.
+    const TELLS: f64 = 6.0;
     /// A fit that describes its points with a larger χ² per degree of freedom leaves much of them to outliers.
     const LARGE: f64 = 2.0;
     let turned = match own {
@@ -159,38 +185,52 @@ fn of_all_in_contact(
         Err(FitError::NoStart) => None,
         Err(_) => return None,
     };
-    let own = match own {
-        Ok(own) if own.verdict == Verdict::Describes => Some(own.chi_squared),
-        _ => None,
-    };
+    let own = own.as_mut().ok().filter(|own| own.verdict == Verdict::Describes);
     let is_found = options.asked.free == FreePart::Found && preset.gap.feature_length().is_some();
-    if !is_found || own.is_some_and(|own| own < LARGE) || progress.stop() {
+    if !is_found || progress.stop() {
         return None;
     }
     let branches = points.branches(&options.asked).ok()?;
     let apart: usize = branches.list.iter().map(|branch| branch.free.len()).sum();
-    if apart == 0 {
+    if apart == 0 || apart > FEW_APART && own.as_ref().is_some_and(|own| own.chi_squared < LARGE) {
         return None;
     }
     let progress = ProgressPart::new(progress, [1.0, 1.0]);
-    let is_better = |quick: &Fit| {
-        quick.verdict == Verdict::Describes && own.is_none_or(|own| LARGE * quick.chi_squared < own)
+    // σ of the force differs from fit to fit.
+    let misfit = |fit: &Fit| chi_squared(fit) * fit.noise.sigma[1].powi(2);
+    let least = own.as_ref().map(|own| (misfit(own), own.noise.sigma[1].powi(2)));
+    let mut alike: Option<Fit> = None;
+    let mut is_better = |quick: &Fit| {
+        let is_better = least.is_none_or(|(own, unit)| misfit(quick) < own - TELLS * unit);
+        let is_alike = least.is_some_and(|(own, unit)| misfit(quick) < own + TELLS * unit);
+        let is_described = quick.verdict == Verdict::Describes;
+        if is_described && is_alike && !is_better {
+            alike = Some(quick.clone());
+        }
+        is_described && is_better
     };
     // The jump that told which way the columns run is one between waves now.
     let given = options.asked.turned;
     let again = (given.is_none() && turned.is_some()).then_some(None);
-    let mut found = [given.or(turned)].into_iter().chain(again).find_map(|turned| {
+    let found = [given.or(turned)].into_iter().chain(again).find_map(|turned| {
         let asked = Asked { free: FreePart::None, turned, ..options.asked };
         let options = Options { asked, ..options.clone() };
         let quick = directed(preset, points, &options.without_intervals(), &progress);
-        let quick = quick.ok().filter(&is_better);
+        let quick = quick.ok().filter(&mut is_better);
         quick.and_then(|_| directed(preset, points, &options, &progress).ok())
-    })?;
+    });
+    let (rows, are) = (counted(apart, "row"), if apart == 1 { "is" } else { "are" });
+    if let (None, Some(alike), Some(own)) = (&found, alike, own) {
+        own.is_told_from(
+            &alike,
+            &format!("the {rows} that {are} taken to be apart may be in contact (--free-part none)"),
+        );
+    }
+    let mut found = found?;
     found.preset.set(FREE_PART, "none".into()).ok()?;
     found.notes.push(format!(
-        "{} that may look apart {} in contact, since only then does the model describe the points: data.free_part is none",
-        counted(apart, "row"),
-        if apart == 1 { "is" } else { "are" }
+        "{rows} that may look apart {are} in contact, since only then does the model describe the points, or better: data.free_part \
+         is none"
     ));
     Some(found)
 }

@@ -15,7 +15,8 @@ use crate::measured::points::Turned;
 use crate::measured::{Abscissa, Instrument, Noise};
 use crate::preset::{Preset, edge};
 use crate::problem::Control;
-use crate::units::{Quantity, number::said};
+use crate::units::Quantity;
+use crate::units::number::{said, significant};
 
 /// A fit.
 #[derive(Debug, Clone)]
@@ -113,6 +114,33 @@ impl Fit {
         Some(format!(
             "{values} hold for R = {radius}, which is not fitted: without {missing} the points show {shown}"
         ))
+    }
+
+    /// Takes the values as not determined if `other` describes the points as well with others, far beyond the errors; `why` begins
+    /// the sentence.
+    pub(super) fn is_told_from(&mut self, other: &Self, why: &str) {
+        /// How far, in standard errors.
+        const FAR: f64 = 3.0;
+        let pairs =
+            || self.parameters.iter().zip(&other.parameters).filter(|(own, other)| own.key == other.key);
+        let is_far = |(own, other): (&Fitted, &Fitted)| {
+            own.standard_error.is_some_and(|error| (own.value - other.value).abs() > FAR * error)
+        };
+        if !pairs().any(is_far) {
+            return;
+        }
+        let shown = pairs().map(|(_, other)| {
+            format!("{} = {}", letter(&self.preset, &other.key), significant(other.value, 4))
+        });
+        let shown: Vec<String> = shown.collect();
+        self.direction =
+            Some(format!("{why}, and {} describe the points as well, in base units", shown.join(", ")));
+        self.verdict = Verdict::NotDetermined;
+        self.correlations = None;
+        for fitted in &mut self.parameters {
+            (fitted.standard_error, fitted.degrees, fitted.interval) = (None, None, None);
+            (fitted.profile, fitted.bootstrap) = (None, None);
+        }
     }
 
     /// Whether what was found holds for `preset`: it has the same points, taken in the same way, and all the fitted and

@@ -13,6 +13,7 @@ use super::least_squares::Ending;
 use super::options::{FitError, Options, letter};
 use super::outcome::Fit;
 use super::pose::posed;
+use super::prior::Prior;
 use super::problem::{ADHESION, FitProblem, FreeParameter, Paths, Target};
 use super::pulled::is_pulled;
 use super::residuals::{beside, of_part};
@@ -29,6 +30,7 @@ use super::track::{LARGEST_MAUGIS, maugis};
 use super::uncertain::given;
 use super::verdict::{Reason, Verdict};
 use crate::elementary::{ln, pow};
+use crate::gap::Gap;
 use crate::measured::branches::FLOOR;
 use crate::measured::{Abscissa, Branches, FreePart, Noise, Origin, Segment};
 use crate::preset::{Preset, edge};
@@ -38,6 +40,9 @@ use crate::units::Quantity;
 use crate::units::number::{said, short, significant};
 use nalgebra::{DMatrix, DVector};
 use std::borrow::Cow;
+
+/// A tare of the force is wider than assumed where it is by this factor.
+const WIDER: f64 = 1.01;
 
 /// Fits the free keys of `preset` to `branches`.
 pub(super) fn fit_branches(
@@ -411,8 +416,22 @@ fn warned(
     warnings.extend(unmoved(fitted));
     warnings.extend(of_unclear(branches, fitted));
     warnings.extend(of_hidden(branches, preset));
+    warnings.extend(of_wide_tare(evidence.problem, branches));
     warnings.extend(branches.swapped().into_iter().chain(branches.unread()));
     warnings
+}
+
+/// That a tare of the force larger than it is assumed to be may come of another minimum, which is so on waves.
+fn of_wide_tare(problem: &FitProblem, branches: &Branches) -> Option<String> {
+    let is_of = |prior: &&Prior| problem.parameters[prior.parameter].target == Target::Baseline;
+    let has_waves = problem.preset.gap.feature_length().is_some();
+    let prior = problem.priors.iter().find(is_of).filter(|_| has_waves && branches.baseline.is_none())?;
+    let [_, sigma] = problem.parameters[prior.parameter].given(prior);
+    (problem.preset.data.baseline.is_none() && sigma > WIDER * branches.tare()).then(|| {
+        "the values hold only if the zero of the force is as far off as data.baseline says: on waves another minimum may be the \
+         right one. Give data.baseline if it is known"
+            .to_owned()
+    })
 }
 
 /// What is known of the force where no rows are apart.

@@ -13,7 +13,7 @@
 use super::chance::beyond_f;
 use super::degrees::LOST;
 use super::determined::{Determined, White, determined, sandwich, words};
-use super::directed::branches_of;
+use super::directed::{branches_of, with_contact};
 use super::fitted::Fitted;
 use super::intervals::noise;
 use super::least_squares::{Ending, Evaluated, LeastSquares, MinimizationSettings, Minimum, cost, minimize};
@@ -273,6 +273,10 @@ pub fn fit_together(
     }
     // Options for the errors of one curve do not apply to those of all.
     let options = &Options { profile: false, bootstrap: None, ..options.clone() };
+    let presets: Vec<Preset> = presets
+        .iter()
+        .map(|preset| with_contact(preset, options, &ProgressPart::new(progress, [0.0, 0.0])))
+        .collect();
     let branches = |(run, preset)| branches_of(preset, options).map_err(numbered(run));
     let branches: Vec<Branches> = presets.iter().enumerate().map(branches).collect::<Result<_, _>>()?;
     let mut posed = Vec::new();

@@ -3,7 +3,8 @@
 //! The curves in `minima/` come from programs that share no code with the engine, with normal noise of the force: `range`
 //! from Maugis' equations at a Tabor number of 1.5, `spring` and `few_rows` from quasi-static loops on waves by
 //! quadrature, `pull`, `slow` and `moving` from the rate equation of an edge, `begins_in_contact` from the equations of Hertz, `hidden`
-//! from those of Johnson, Kendall and Roberts, as all that fit `ball` and `dead_load`. The presets begin up to three times off.
+//! from those of Johnson, Kendall and Roberts, as all that fit `ball` and `dead_load`, `last_wave`, `either` and `snaps` from the exact
+//! equilibria on waves. The presets begin up to three times off.
 
 use super::kinds::Made;
 use super::trial::{Outcome, fitted, options, outcome};
@@ -179,4 +180,32 @@ fn waves_that_a_preset_leaves_out_are_no_range() {
         &["E*", "gamma", "A"],
         &[(MODULUS, 1e6), (ADHESION, 0.05), ("gap.parameters.A", 3e-7)],
     );
+}
+
+/// The last three rows look apart, and are on the last wave: all rows in contact describe the points better.
+#[test]
+fn rows_on_the_last_wave_are_in_contact_although_both_readings_describe_them() {
+    is_right(
+        include_str!("minima/last_wave.csv"),
+        include_str!("minima/last_wave.toml"),
+        &["E*", "gamma", "data.offset"],
+        &[(MODULUS, 818_905.0), (ADHESION, 0.064_73)],
+    );
+}
+
+/// Both readings of the last three rows describe the points as well, with works of adhesion a third apart.
+#[test]
+fn two_readings_that_describe_the_points_determine_nothing() {
+    let [text, preset] = [include_str!("minima/either.csv"), include_str!("minima/either.toml")];
+    let found = found(text, preset, &["E*", "gamma", "data.offset"], &[(MODULUS, 880_500.0)]);
+    assert_eq!(found.verdict, "not-determined", "{found:#?}");
+}
+
+/// The first two rows are eight deviations off, where the curve has no snap and the points have one.
+#[test]
+fn rows_beside_a_snap_that_the_curve_misses_speak_against_it() {
+    let [text, preset] = [include_str!("minima/snaps.csv"), include_str!("minima/snaps.toml")];
+    let found = found(text, preset, &["E*", "gamma", "data.offset"], &[(MODULUS, 1_148_900.0)]);
+    assert!(!found.is_trusted(), "{found:#?}");
+    assert!(found.said.iter().any(|said| said.contains("next to a snap")), "{found:#?}");
 }

@@ -15,6 +15,7 @@ use super::super::chance::{beyond_f, beyond_t};
 use super::super::problem::{FitProblem, Target};
 use super::super::scatter::{ScatterRow, outlier};
 use super::super::verdict::Reason;
+use super::edge::radii_of_curve;
 use super::{Evidence, ROUNDING, runs};
 use crate::elementary::{hypot, ln};
 use crate::gap::Gap;
@@ -25,6 +26,7 @@ use crate::text::counted;
 use crate::units::Quantity;
 use crate::units::number::{said, short};
 use nalgebra::DVector;
+use std::cmp::Ordering;
 
 /// The share of right fits that each test flags.
 const FALSE_ALARM: f64 = 1e-3;
@@ -81,9 +83,58 @@ pub(super) fn of_contact(evidence: Evidence) -> Vec<Reason> {
     }
     if reasons.is_empty() {
         reasons.extend(of_ramps(evidence));
-        reasons.extend(of_many(evidence));
+        reasons.extend(
+            of_many(evidence).or_else(|| of_snaps(evidence).filter(|reason| reason.value > Some(1.0))),
+        );
     }
     reasons
+}
+
+/// Outliers on waves next to a snap, or at an end of the record, that make up most of χ²: that is what a snap at another place looks
+/// like. Disturbances lie anywhere. One row alone may also have snapped too early: that is a doubt, and no reason.
+pub(super) fn of_snaps(Evidence { problem, solved, scatter, .. }: Evidence) -> Option<Reason> {
+    /// There is a snap between rows next to each other whose radii differ by this many times what they do as a rule.
+    const SNAPS: f64 = 3.0;
+    /// Outliers that leave χ² below this many times that of the noise may be chance.
+    const LARGE: f64 = 2.0;
+    problem.preset.gap.feature_length()?;
+    let s = scatter.contact?.max(ROUNDING);
+    let radii = if problem.abscissa == Abscissa::Radius {
+        (0..problem.data.len()).map(|i| problem.radius(i)).collect()
+    } else {
+        radii_of_curve(problem, &solved.minimum.parameters)?
+    };
+    (0..problem.branches()).find_map(|branch| {
+        let rows = problem.in_order(solved, branch, false, 0);
+        let limit = outlier(&rows);
+        let is_off = |row: &ScatterRow| row.residual.abs() > limit;
+        let step = |pair: &[ScatterRow]| (radii[pair[0].index] - radii[pair[1].index]).abs();
+        let usual = median(rows.windows(2).map(step).filter(|step| step.is_finite()).collect())?;
+        // Next to a row that has no radius there is a jump.
+        let has_snap = |pair: &[ScatterRow]| step(pair).partial_cmp(&(SNAPS * usual)).is_none_or(Ordering::is_ge);
+        let square = |row: &ScatterRow| row.residual.powi(2);
+        let all: f64 = rows.iter().map(square).sum();
+        // Rows without a snap between them, the outliers at the ends of which are counted.
+        let stretches = rows.chunk_by(|a, b| !has_snap(&[*a, *b]));
+        let ends = |stretch: &[ScatterRow]| {
+            let first = stretch.iter().take_while(|row| is_off(row)).count();
+            let last = stretch[first..].iter().rev().take_while(|row| is_off(row)).count();
+            stretch[..first].iter().chain(&stretch[stretch.len() - last..]).copied().collect::<Vec<_>>()
+        };
+        let beside: Vec<ScatterRow> = stretches.flat_map(ends).collect();
+        let of_beside: f64 = beside.iter().map(square).sum();
+        let is_most = 2.0 * of_beside > all && all > LARGE * s * s * rows.len() as f64;
+        is_most.then(|| {
+            let sentence = format!(
+                "{} of the {} next to a snap, or at an end, {} far off the curve: on waves that is what snaps at other places look \
+                 like, and another minimum may be the right one",
+                counted(beside.len(), "row"),
+                problem.data[rows[0].index].segment.name(),
+                if beside.len() == 1 { "is" } else { "are" }
+            );
+            Reason::new("outliers", beside.len() as f64, sentence)
+        })
+    })
 }
 
 /// Outliers that are too many for disturbances.
