@@ -74,23 +74,16 @@ impl Background for FitOutcome {
     }
 
     fn came(model: &mut Model, found: Arc<Self>) -> Vec<Effect> {
-        let of = asked::<Self>(model);
-        if of != Some(&model.preset) {
-            return match &found.0 {
-                _ if of.is_none() || of != model.fitted_from.as_ref() => {
-                    model.refuse("the values changed while the fit ran: its result is discarded")
-                }
-                Ok(again) if again.holds_for(&model.preset) => {
-                    model.fit = Some(Arc::clone(again));
-                    model.tell(
-                        Level::Info,
-                        format!("the errors and the report of the fit are back: {}", told(again)),
-                    );
-                    Vec::new()
-                }
-                _ => model
-                    .refuse(format!("the fit does not lead to these values again: {} fits", Id::Fit.named())),
-            };
+        if std::mem::take(&mut model.fits_again) {
+            // Undo and redo lead to and from its values meanwhile.
+            model.fit = found.0.as_ref().ok().cloned();
+            if model.fitted().is_some() {
+                model.tell(Level::Info, "the errors and the report of the fit are back");
+            }
+            return Vec::new();
+        }
+        if asked::<Self>(model) != Some(&model.preset) {
+            return model.refuse("the values changed while the fit ran: its result is discarded");
         }
         match &found.0 {
             Ok(found) => taken(model, found),
@@ -103,6 +96,9 @@ impl Background for FitOutcome {
 
     fn says(model: &Model) -> Option<String> {
         let percent = model.results.percent::<Self>()?;
+        if model.fits_again {
+            return Some(format!("repeating the fit, {percent} %"));
+        }
         Some(format!("fitting, {percent} %; {}: best so far", Id::Cancel.named()))
     }
 }
@@ -119,12 +115,14 @@ pub(super) fn fit(model: &mut Model) -> Vec<Effect> {
         return model.refuse(text);
     }
     let preset = model.preset.clone();
+    model.fits_again = false;
     vec![ask::<FitOutcome>(model, preset)]
 }
 
 /// Requests the fit from `from` again, which led to the values of a session that is resumed: its errors and its report.
 pub(super) fn fit_again(model: &mut Model, from: Preset) -> Effect {
     model.fitted_from = Some(from.clone());
+    model.fits_again = true;
     ask::<FitOutcome>(model, from)
 }
 
@@ -176,12 +174,6 @@ impl Model {
     /// The last fit that was adopted, if the present values are still its values.
     pub fn fitted(&self) -> Option<&Fit> {
         self.fit.as_deref().filter(|fit| fit.holds_for(&self.preset))
-    }
-
-    /// Whether the fit that led to the values of a resumed session is under way again.
-    pub fn is_fitting_again(&self) -> bool {
-        let asked = asked::<FitOutcome>(self).filter(|_| self.results.under_way::<FitOutcome>().is_some());
-        asked.is_some_and(|asked| *asked != self.preset && Some(asked) == self.fitted_from.as_ref())
     }
 
     /// What it found, in one line.

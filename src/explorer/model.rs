@@ -146,6 +146,8 @@ pub struct Model {
     pub fit: Option<Arc<Fit>>,
     /// The values from which it began, or will begin again.
     pub fitted_from: Option<Preset>,
+    /// Whether it is under way again, for its errors and its report: its values are those of the session.
+    pub fits_again: bool,
     /// The quantity being studied.
     pub studied: QuantityColumn,
     /// The range it is studied over while its key is selected; `None` for the usual one.
@@ -254,6 +256,7 @@ impl Model {
             retitled: None,
             fit: None,
             fitted_from: None,
+            fits_again: false,
             studied: QuantityColumn { quantity: &QUANTITIES[0], under: Under::Own },
             studied_over: None,
             stiffness,

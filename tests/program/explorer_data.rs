@@ -168,7 +168,7 @@ fn a_fit_changes_the_free_keys_as_one_command_and_says_their_errors() {
         Document::read(&document).unwrap().snapshot().unwrap().resume(None)
     };
     let (model, _) = resumed(&session.model);
-    assert!(model.preset == session.model.preset && model.fitted().is_none() && model.is_fitting_again());
+    assert!(model.preset == session.model.preset && model.fitted().is_none() && model.fits_again);
     let (mut model, effects) = resumed(&model);
     session.driver.settle(&mut model, effects);
     assert!(
@@ -177,7 +177,7 @@ fn a_fit_changes_the_free_keys_as_one_command_and_says_their_errors() {
             .as_ref()
             .is_some_and(|(_, said)| said.contains("errors and the report of the fit are back"))
     );
-    assert!(model.preset == session.model.preset && !model.is_fitting_again());
+    assert!(model.preset == session.model.preset && !model.fits_again);
     assert_eq!(model.fitted_error(modulus), session.model.fitted_error(modulus));
     assert!(model.fitted_error(modulus).is_some());
     for (key, truth) in [(modulus, 1e6), (adhesion, 0.05), (data::OFFSET, 12.3e-6), (data::BASELINE, 4e-6)] {

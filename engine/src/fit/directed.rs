@@ -24,7 +24,7 @@ use crate::units::number::{said, short};
 /// A direction is the better one if its χ² is smaller by this much.
 const CLEAR: f64 = 20.0;
 
-/// More rows than this stand still on no wave: they are apart.
+/// More rows than this are apart: on no wave does the force stay the same for so long.
 const FEW_APART: usize = 20;
 
 /// Fits the free keys of `preset` to its own measured curve, as [`fit`] does.
@@ -121,8 +121,11 @@ pub fn fit(
     options: &Options,
     progress: &dyn Progress,
 ) -> Result<Fit, FitError> {
-    let mut found = directed(preset, points, options, progress);
-    let mut found = match of_all_in_contact(preset, points, (options, &mut found), progress) {
+    let may_be_twice = preset.gap.feature_length().is_some() && options.asked.free == FreePart::Found;
+    let share = if may_be_twice { 0.5 } else { 1.0 };
+    let mut found = directed(preset, points, options, &ProgressPart::new(progress, [0.0, share]));
+    let rest = ProgressPart::new(progress, [share, 1.0]);
+    let mut found = match of_all_in_contact(preset, points, (options, &mut found), &rest) {
         Some(found) => found,
         None => found?,
     };
@@ -192,10 +195,15 @@ fn of_all_in_contact(
     }
     let branches = points.branches(&options.asked).ok()?;
     let apart: usize = branches.list.iter().map(|branch| branch.free.len()).sum();
-    if apart == 0 || apart > FEW_APART && own.as_ref().is_some_and(|own| own.chi_squared < LARGE) {
+    // Rows at the zero of the force are apart.
+    let is_apart = |own: &Fit| {
+        let zero = preset.data.baseline.unwrap_or(0.0);
+        let off = own.instrument.baseline - zero;
+        own.chi_squared < LARGE && (apart > FEW_APART || off.abs() < branches.tare())
+    };
+    if apart == 0 || own.as_ref().is_some_and(|own| is_apart(own)) {
         return None;
     }
-    let progress = ProgressPart::new(progress, [1.0, 1.0]);
     // σ of the force differs from fit to fit.
     let misfit = |fit: &Fit| chi_squared(fit) * fit.noise.sigma[1].powi(2);
     let least = own.as_ref().map(|own| (misfit(own), own.noise.sigma[1].powi(2)));
@@ -215,9 +223,9 @@ fn of_all_in_contact(
     let found = [given.or(turned)].into_iter().chain(again).find_map(|turned| {
         let asked = Asked { free: FreePart::None, turned, ..options.asked };
         let options = Options { asked, ..options.clone() };
-        let quick = directed(preset, points, &options.without_intervals(), &progress);
+        let quick = directed(preset, points, &options.without_intervals(), progress);
         let quick = quick.ok().filter(&mut is_better);
-        quick.and_then(|_| directed(preset, points, &options, &progress).ok())
+        quick.and_then(|_| directed(preset, points, &options, progress).ok())
     });
     let (rows, are) = (counted(apart, "row"), if apart == 1 { "is" } else { "are" });
     if let (None, Some(alike), Some(own)) = (&found, alike, own) {
@@ -229,7 +237,7 @@ fn of_all_in_contact(
     let mut found = found?;
     found.preset.set(FREE_PART, "none".into()).ok()?;
     found.notes.push(format!(
-        "{rows} that may look apart {are} in contact, since only then does the model describe the points, or better: data.free_part \
+        "{rows} that may look apart {are} in contact, since the model describes the points only then, or better then: data.free_part \
          is none"
     ));
     Some(found)

@@ -224,7 +224,6 @@ pub(super) fn doubts(
     let of_edge = || rate::of_untimed(evidence);
     let is_sharp = problem.preset.cohesion().is_none() && !is_pulled(&problem.preset);
     let mut doubts: Vec<String> = if has_speed || !is_sharp { None } else { of_edge() }.into_iter().collect();
-    doubts.extend(contact::of_snaps(evidence).filter(|_| reasons.is_empty()).map(|reason| reason.sentence));
     // The larger of two: through snaps a standard error may be too small.
     let error = |fitted: &Fitted| {
         let drawn = fitted.bootstrap.map_or(0.0, |found| found.half() / NORMAL);

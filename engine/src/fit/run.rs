@@ -154,7 +154,9 @@ impl<'a> Posed<'a> {
         (problem, solved, approached) = of_start(problem, solved, (&branches, options), &mut notes, &solve)?;
         let has_snaps =
             |paths: &Paths| [Segment::Approach, Segment::Retraction].iter().any(|of| paths.of(*of).snaps > 0);
-        if problem.paths(&solved.minimum.parameters).is_some_and(|paths| has_snaps(&paths)) {
+        // A row that changes its side of a line on which the edge is pinned has a minimum of its own, too.
+        if problem.pins() || problem.paths(&solved.minimum.parameters).is_some_and(|paths| has_snaps(&paths))
+        {
             solved = beyond_snaps(&problem, solved, options.robust, progress);
         }
         let [of_way, of_force, _] = branches.noise.from;

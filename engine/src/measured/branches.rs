@@ -73,8 +73,10 @@ impl Branches {
     }
 
     /// σ of x and P in contact by the order of the rows, which is a clock if they were taken at even times: at least the noise of
-    /// each column. At most their scatter over each other, which has both. `None` of too few rows.
+    /// each column. At most their scatter over each other, which has both. `None` of few rows, whose bend would count as noise, and of
+    /// rows that may be sorted, whose order is none.
     pub fn noise_in_order(&self) -> Option<[f64; 2]> {
+        const FEWEST: usize = 40;
         let of = |branch: &MeasuredBranch| {
             let mut points: Vec<&MeasuredPoint> = branch.attached.iter().collect();
             let columns = |points: &[&MeasuredPoint]| -> [Vec<f64>; 2] {
@@ -84,6 +86,10 @@ impl Branches {
             let [x, force] = columns(&points);
             let of_both = [scatter_over(&force, &x), scatter_over(&x, &force)];
             points.sort_by_key(|point| point.at);
+            let is_sorted = |column: &Vec<f64>| column.is_sorted() || column.is_sorted_by(|a, b| a >= b);
+            if points.len() < FEWEST || columns(&points).iter().any(is_sorted) {
+                return None;
+            }
             let count: Vec<f64> = (0..points.len()).map(|i| i as f64).collect();
             let in_order = columns(&points).map(|column| scatter_over(&count, &column));
             let least = |axis: usize| Some(in_order[axis]?.min(of_both[axis].unwrap_or(f64::INFINITY)));

@@ -36,15 +36,6 @@ impl MeasuredBranch {
         dropped.iter().map(|point| point.row).collect()
     }
 
-    /// Whether most of the rows apart have a contact radius beside that of the last row in contact: whatever their force does, they touch.
-    fn still_touches(&self) -> bool {
-        /// The share of that radius which is no error of one that is zero.
-        const SHARE: f64 = 0.25;
-        let radius = self.attached.iter().rev().map(|point| point.radius).find(|radius| *radius > 0.0);
-        let touches = |last: f64| self.free.iter().filter(|point| point.radius > SHARE * last).count();
-        radius.is_some_and(|last| 2 * touches(last) > self.free.len())
-    }
-
     /// Drops the rows around the jump that noise in x may have put on the wrong side.
     fn clears_jump(&mut self, noise: &Noise) {
         /// Rows within this many σ of x from the jump may lie on either side.
@@ -126,15 +117,6 @@ pub(super) fn branch(
         FreePart::Within(span) => return apart_within(segment, points, span),
         FreePart::Found => {}
     }
-    let found = parted(segment, points.clone());
-    if found.still_touches() {
-        return MeasuredBranch { segment, attached: points, free: Vec::new(), jump: 0 };
-    }
-    found
-}
-
-/// The parts of a branch as its forces over x show them.
-fn parted(segment: Segment, mut points: Vec<MeasuredPoint>) -> MeasuredBranch {
     let (x, force): (Vec<f64>, Vec<f64>) = points.iter().map(|point| (point.x, point.force)).unzip();
     if let Some(jump) = jump(&x, &force) {
         let rest = points.split_off(jump.at);

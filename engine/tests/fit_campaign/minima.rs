@@ -4,7 +4,7 @@
 //! from Maugis' equations at a Tabor number of 1.5, `spring` and `few_rows` from quasi-static loops on waves by
 //! quadrature, `pull`, `slow` and `moving` from the rate equation of an edge, `begins_in_contact` from the equations of Hertz, `hidden`
 //! from those of Johnson, Kendall and Roberts, as all that fit `ball` and `dead_load`, `last_wave`, `either` and `snaps` from the exact
-//! equilibria on waves. The presets begin up to three times off.
+//! equilibria on waves, `pinned` from a loop with a dead band. The presets begin up to three times off.
 
 use super::kinds::Made;
 use super::trial::{Outcome, fitted, options, outcome};
@@ -207,5 +207,22 @@ fn rows_beside_a_snap_that_the_curve_misses_speak_against_it() {
     let [text, preset] = [include_str!("minima/snaps.csv"), include_str!("minima/snaps.toml")];
     let found = found(text, preset, &["E*", "gamma", "data.offset"], &[(MODULUS, 1_148_900.0)]);
     assert!(!found.is_trusted(), "{found:#?}");
-    assert!(found.said.iter().any(|said| said.contains("next to a snap")), "{found:#?}");
+    assert!(found.said.iter().any(|said| said.contains("rows 1 to 2 of the retraction")), "{found:#?}");
+}
+
+/// Position, force and radius of a loop with a dead band: rows at the ends of the line on which the edge is pinned make minima side by
+/// side, eight errors apart.
+#[test]
+fn a_pinned_edge_is_found_beside_other_minima() {
+    is_right(
+        include_str!("minima/pinned.csv"),
+        include_str!("minima/pinned.toml"),
+        &["E*", "gamma", "gamma_a", "data.offset"],
+        &[
+            (MODULUS, 729_342.55),
+            (ADHESION, 0.065_337_3),
+            ("material.closing_work_of_adhesion", 0.025_245_85),
+            ("data.offset", -17.860_66e-6),
+        ],
+    );
 }

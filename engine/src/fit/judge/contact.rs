@@ -26,7 +26,7 @@ use crate::text::counted;
 use crate::units::Quantity;
 use crate::units::number::{said, short};
 use nalgebra::DVector;
-use std::cmp::Ordering;
+use std::ops::Range;
 
 /// The share of right fits that each test flags.
 const FALSE_ALARM: f64 = 1e-3;
@@ -83,56 +83,63 @@ pub(super) fn of_contact(evidence: Evidence) -> Vec<Reason> {
     }
     if reasons.is_empty() {
         reasons.extend(of_ramps(evidence));
-        reasons.extend(
-            of_many(evidence).or_else(|| of_snaps(evidence).filter(|reason| reason.value > Some(1.0))),
-        );
+        reasons.extend(of_many(evidence).or_else(|| of_snaps(evidence)));
     }
     reasons
 }
 
-/// Outliers on waves next to a snap, or at an end of the record, that make up most of χ²: that is what a snap at another place looks
-/// like. Disturbances lie anywhere. One row alone may also have snapped too early: that is a doubt, and no reason.
-pub(super) fn of_snaps(Evidence { problem, solved, scatter, .. }: Evidence) -> Option<Reason> {
+/// Outliers side by side on waves, next to a snap or at an end of the record, that make up most of χ²: that is what a snap at another
+/// place looks like. Disturbances lie anywhere, and one row alone may have snapped early.
+fn of_snaps(Evidence { problem, solved, scatter, .. }: Evidence) -> Option<Reason> {
     /// There is a snap between rows next to each other whose radii differ by this many times what they do as a rule.
     const SNAPS: f64 = 3.0;
     /// Outliers that leave χ² below this many times that of the noise may be chance.
     const LARGE: f64 = 2.0;
+    /// The fewest rows.
+    const FEWEST: usize = 2;
     problem.preset.gap.feature_length()?;
     let s = scatter.contact?.max(ROUNDING);
-    let radii = if problem.abscissa == Abscissa::Radius {
-        (0..problem.data.len()).map(|i| problem.radius(i)).collect()
-    } else {
-        radii_of_curve(problem, &solved.minimum.parameters)?
-    };
+    let u = &solved.minimum.parameters;
+    let paths = problem.paths(u)?;
+    let radii = radii_of_curve(problem, u)?;
     (0..problem.branches()).find_map(|branch| {
         let rows = problem.in_order(solved, branch, false, 0);
+        let segment = problem.data[rows.first()?.index].segment;
+        if paths.of(segment).snaps == 0 {
+            return None;
+        }
         let limit = outlier(&rows);
-        let is_off = |row: &ScatterRow| row.residual.abs() > limit;
-        let step = |pair: &[ScatterRow]| (radii[pair[0].index] - radii[pair[1].index]).abs();
-        let usual = median(rows.windows(2).map(step).filter(|step| step.is_finite()).collect())?;
+        let step = |pair: [&ScatterRow; 2]| (radii[pair[0].index] - radii[pair[1].index]).abs();
+        let steps = rows.windows(2).map(|pair| step([&pair[0], &pair[1]]));
+        let usual = median(steps.filter(|step| step.is_finite()).collect())?;
         // Next to a row that has no radius there is a jump.
-        let has_snap = |pair: &[ScatterRow]| step(pair).partial_cmp(&(SNAPS * usual)).is_none_or(Ordering::is_ge);
-        let square = |row: &ScatterRow| row.residual.powi(2);
-        let all: f64 = rows.iter().map(square).sum();
-        // Rows without a snap between them, the outliers at the ends of which are counted.
-        let stretches = rows.chunk_by(|a, b| !has_snap(&[*a, *b]));
-        let ends = |stretch: &[ScatterRow]| {
-            let first = stretch.iter().take_while(|row| is_off(row)).count();
-            let last = stretch[first..].iter().rev().take_while(|row| is_off(row)).count();
-            stretch[..first].iter().chain(&stretch[stretch.len() - last..]).copied().collect::<Vec<_>>()
+        let goes_on = |a: &ScatterRow, b: &ScatterRow| step([a, b]) < SNAPS * usual;
+        let square = |rows: &[ScatterRow]| rows.iter().map(|row| row.residual.powi(2)).sum::<f64>();
+        let all = square(&rows);
+        // Outliers side by side, to one side, of which one lies next to a snap or at an end.
+        let side = |row: &ScatterRow| i8::from(row.residual > limit) - i8::from(row.residual < -limit);
+        let mut at = 0;
+        let runs = rows.chunk_by(|a, b| side(a) == side(b)).map(|run| {
+            at += run.len();
+            at - run.len()..at
+        });
+        let is_beside = |run: &Range<usize>| {
+            let (before, after) = (run.start.saturating_sub(1), (run.end + 1).min(rows.len()));
+            let has_snap = rows[before..after].windows(2).any(|pair| !goes_on(&pair[0], &pair[1]));
+            run.start == 0 || run.end == rows.len() || has_snap
         };
-        let beside: Vec<ScatterRow> = stretches.flat_map(ends).collect();
-        let of_beside: f64 = beside.iter().map(square).sum();
-        let is_most = 2.0 * of_beside > all && all > LARGE * s * s * rows.len() as f64;
+        let missed = runs.filter(|run| side(&rows[run.start]) != 0 && run.len() >= FEWEST && is_beside(run));
+        let missed = missed.map(|run| &rows[run]).max_by(|a, b| square(a).total_cmp(&square(b)))?;
+        let is_most = 2.0 * square(missed) > all && all > LARGE * s * s * rows.len() as f64;
         is_most.then(|| {
+            let lines = missed.iter().map(|row| problem.data[row.index].point.row);
+            let [lo, hi] = lines.fold([usize::MAX, 0], |[lo, hi], row| [lo.min(row), hi.max(row)]);
             let sentence = format!(
-                "{} of the {} next to a snap, or at an end, {} far off the curve: on waves that is what snaps at other places look \
-                 like, and another minimum may be the right one",
-                counted(beside.len(), "row"),
-                problem.data[rows[0].index].segment.name(),
-                if beside.len() == 1 { "is" } else { "are" }
+                "rows {lo} to {hi} of the {}, at an end or next to a snap, are far off the curve, to one side: on waves, a snap at \
+                 another place looks like that. Other first guesses may lead to it (--set), and --range leaves rows out",
+                segment.name()
             );
-            Reason::new("outliers", beside.len() as f64, sentence)
+            Reason::new("outliers", missed.len() as f64, sentence)
         })
     })
 }
