@@ -74,7 +74,7 @@ impl Background for FitOutcome {
     }
 
     fn came(model: &mut Model, found: Arc<Self>) -> Vec<Effect> {
-        if std::mem::take(&mut model.fits_again) {
+        if repeats(model).is_some_and(std::mem::take) {
             // Undo and redo lead to and from its values meanwhile.
             model.fit = found.0.as_ref().ok().cloned();
             if model.fitted().is_some() {
@@ -96,11 +96,24 @@ impl Background for FitOutcome {
 
     fn says(model: &Model) -> Option<String> {
         let percent = model.results.percent::<Self>()?;
-        if model.fits_again {
+        if model.fits_again() {
             return Some(format!("repeating the fit, {percent} %"));
         }
         Some(format!("fitting, {percent} %; {}: best so far", Id::Cancel.named()))
     }
+}
+
+/// Where the last fit began.
+#[derive(Debug, Clone)]
+pub struct FitStart {
+    pub preset: Preset,
+    /// Whether the fit is under way again, for its errors and its report: its values are those of the session.
+    repeats: bool,
+}
+
+/// Whether the last fit is under way again, to be changed.
+fn repeats(model: &mut Model) -> Option<&mut bool> {
+    model.fitted_from.as_mut().map(|from| &mut from.repeats)
 }
 
 /// Requests a fit of the present values; one of them that is under way ends with the best result so far.
@@ -115,14 +128,15 @@ pub(super) fn fit(model: &mut Model) -> Vec<Effect> {
         return model.refuse(text);
     }
     let preset = model.preset.clone();
-    model.fits_again = false;
+    if let Some(repeats) = repeats(model) {
+        *repeats = false;
+    }
     vec![ask::<FitOutcome>(model, preset)]
 }
 
 /// Requests the fit from `from` again, which led to the values of a session that is resumed: its errors and its report.
 pub(super) fn fit_again(model: &mut Model, from: Preset) -> Effect {
-    model.fitted_from = Some(from.clone());
-    model.fits_again = true;
+    model.fitted_from = Some(FitStart { preset: from.clone(), repeats: true });
     ask::<FitOutcome>(model, from)
 }
 
@@ -136,7 +150,7 @@ fn taken(model: &mut Model, found: &Arc<Fit>) -> Vec<Effect> {
     }
     model.tell(if found.verdict == Verdict::Describes { Level::Info } else { Level::Error }, told(found));
     model.fit = Some(Arc::clone(found));
-    model.fitted_from = Some(model.preset.clone());
+    model.fitted_from = Some(FitStart { preset: model.preset.clone(), repeats: false });
     change(model, found.preset.clone())
 }
 
@@ -174,6 +188,17 @@ impl Model {
     /// The last fit that was adopted, if the present values are still its values.
     pub fn fitted(&self) -> Option<&Fit> {
         self.fit.as_deref().filter(|fit| fit.holds_for(&self.preset))
+    }
+
+    /// Where the fit began whose values these are.
+    pub fn fit_began(&self) -> Option<&Preset> {
+        let is_known = self.fitted().is_some() || self.fits_again();
+        self.fitted_from.as_ref().filter(|_| is_known).map(|from| &from.preset)
+    }
+
+    /// Whether the last fit is under way again.
+    pub fn fits_again(&self) -> bool {
+        self.fitted_from.as_ref().is_some_and(|from| from.repeats)
     }
 
     /// What it found, in one line.

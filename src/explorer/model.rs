@@ -3,6 +3,7 @@
 use super::command::{Command, FIRST_LENGTH, FIRST_PACE};
 use super::curve::{CurveData, Inadmissible};
 use super::data::Folder;
+use super::fit::FitStart;
 use super::history::{Bookmark, History};
 use super::journal::Journal;
 use super::map_axes::MapAxes;
@@ -144,10 +145,8 @@ pub struct Model {
     pub(super) retitled: Option<[String; 2]>,
     /// The last fit that was adopted; the values may have changed since.
     pub fit: Option<Arc<Fit>>,
-    /// The values from which it began, or will begin again.
-    pub fitted_from: Option<Preset>,
-    /// Whether it is under way again, for its errors and its report: its values are those of the session.
-    pub fits_again: bool,
+    /// Where that began.
+    pub(super) fitted_from: Option<FitStart>,
     /// The quantity being studied.
     pub studied: QuantityColumn,
     /// The range it is studied over while its key is selected; `None` for the usual one.
@@ -256,7 +255,6 @@ impl Model {
             retitled: None,
             fit: None,
             fitted_from: None,
-            fits_again: false,
             studied: QuantityColumn { quantity: &QUANTITIES[0], under: Under::Own },
             studied_over: None,
             stiffness,

@@ -8,7 +8,7 @@ use pulloff::explorer::fit::FittedError;
 use pulloff::explorer::model::{Model, Question};
 use pulloff::explorer::script::parse;
 use pulloff::explorer::session::{Document, Ended, Snapshot};
-use pulloff::explorer::{Command, Id, View};
+use pulloff::explorer::{Command, Id, View, update};
 use pulloff::figure::{Mark, Sign, Subject};
 use pulloff_engine::preset::data;
 
@@ -168,7 +168,7 @@ fn a_fit_changes_the_free_keys_as_one_command_and_says_their_errors() {
         Document::read(&document).unwrap().snapshot().unwrap().resume(None)
     };
     let (model, _) = resumed(&session.model);
-    assert!(model.preset == session.model.preset && model.fitted().is_none() && model.fits_again);
+    assert!(model.preset == session.model.preset && model.fitted().is_none() && model.fits_again());
     let (mut model, effects) = resumed(&model);
     session.driver.settle(&mut model, effects);
     assert!(
@@ -177,9 +177,18 @@ fn a_fit_changes_the_free_keys_as_one_command_and_says_their_errors() {
             .as_ref()
             .is_some_and(|(_, said)| said.contains("errors and the report of the fit are back"))
     );
-    assert!(model.preset == session.model.preset && !model.fits_again);
+    assert!(model.preset == session.model.preset && !model.fits_again());
     assert_eq!(model.fitted_error(modulus), session.model.fitted_error(modulus));
     assert!(model.fitted_error(modulus).is_some());
+    // What is undone while the fit repeats stays undone.
+    let (mut model, effects) = resumed(&session.model);
+    let undone = update(&mut model, Id::Undo.into());
+    session.driver.settle(&mut model, effects);
+    session.driver.settle(&mut model, undone);
+    assert_eq!(model.preset, before);
+    let redone = update(&mut model, Id::Redo.into());
+    session.driver.settle(&mut model, redone);
+    assert!(model.preset == session.model.preset && model.fitted_error(modulus).is_some());
     for (key, truth) in [(modulus, 1e6), (adhesion, 0.05), (data::OFFSET, 12.3e-6), (data::BASELINE, 4e-6)] {
         let (found, error) = (value(&session, key), known_to(&session, key));
         assert!((found - truth).abs() < 4.0 * error && error < 0.05 * truth, "{key}: {found} ± {error}");

@@ -124,7 +124,7 @@ impl Snapshot {
             pins: model.pins.presets().map(|(number, preset)| (number, preset.clone())).collect(),
             look: SessionLook::of(model),
             journal: model.journal.kept().clone(),
-            fitted_from: model.fitted_from.clone().filter(|_| model.fitted().is_some() || model.fits_again),
+            fitted_from: model.fit_began().cloned(),
         }
     }
 
