@@ -4,7 +4,7 @@ use super::background::{Background, Tell, Want, Watcher, ask, asked, stop};
 use super::command::Id;
 use super::effect::Effect;
 use super::fitting::named;
-use super::model::{Level, Model};
+use super::model::{FitStart, Level, Model};
 use super::requests::change;
 use crate::mend::WordedFault;
 use pulloff_engine::fit::least_squares::Ending;
@@ -101,14 +101,6 @@ impl Background for FitOutcome {
         }
         Some(format!("fitting, {percent} %; {}: best so far", Id::Cancel.named()))
     }
-}
-
-/// Where the last fit began.
-#[derive(Debug, Clone)]
-pub struct FitStart {
-    pub preset: Preset,
-    /// Whether the fit is under way again, for its errors and its report: its values are those of the session.
-    repeats: bool,
 }
 
 /// Whether the last fit is under way again, to be changed.

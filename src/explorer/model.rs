@@ -3,7 +3,6 @@
 use super::command::{Command, FIRST_LENGTH, FIRST_PACE};
 use super::curve::{CurveData, Inadmissible};
 use super::data::Folder;
-use super::fit::FitStart;
 use super::history::{Bookmark, History};
 use super::journal::Journal;
 use super::map_axes::MapAxes;
@@ -109,6 +108,14 @@ impl Level {
     pub fn is_bad(self) -> bool {
         self != Self::Info
     }
+}
+
+/// Where the last fit began.
+#[derive(Debug, Clone)]
+pub struct FitStart {
+    pub preset: Preset,
+    /// Whether the fit is under way again, for its errors and its report: its values are those of the session.
+    pub(super) repeats: bool,
 }
 
 /// A session.
