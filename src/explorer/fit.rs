@@ -110,9 +110,8 @@ fn repeats(model: &mut Model) -> Option<&mut bool> {
 
 /// Requests a fit of the present values; one of them that is under way ends with the best result so far.
 pub(super) fn fit(model: &mut Model) -> Vec<Effect> {
-    if let Some(stops) =
-        stop::<FitOutcome>(model).filter(|_| asked::<FitOutcome>(model) == Some(&model.preset))
-    {
+    let is_of_these = asked::<FitOutcome>(model) == Some(&model.preset) && !model.fits_again();
+    if let Some(stops) = stop::<FitOutcome>(model).filter(|_| is_of_these) {
         return vec![stops];
     }
     if model.preset.data.source.is_some() && model.preset.data.free().next().is_none() {

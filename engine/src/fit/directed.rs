@@ -152,21 +152,20 @@ pub fn fit(
 
 /// `preset` with all rows of its curve in contact, where few look apart on waves and its own fit finds that they are not.
 pub(super) fn with_contact(preset: &Preset, options: &Options, progress: &dyn Progress) -> Preset {
-    let may = || {
-        let branches = branches_of(preset, options).ok()?;
-        let apart: usize = branches.list.iter().map(|branch| branch.free.len()).sum();
-        (1..=FEW_APART).contains(&apart).then_some(())
-    };
     let alone = || {
         preset.gap.feature_length()?;
-        may()?;
-        let found = fit_own(preset, &options.without_intervals(), progress).ok()?;
-        let is_found =
-            found.verdict == Verdict::Describes && found.preset.data.free_part != preset.data.free_part;
+        let branches = branches_of(preset, options).ok()?;
+        let apart: usize = branches.list.iter().map(|branch| branch.free.len()).sum();
+        let found = || fit_own(preset, &options.without_intervals(), progress).ok();
+        let found = (1..=FEW_APART).contains(&apart).then(found).flatten()?;
+        let free_part = &found.preset.data.free_part;
+        if found.verdict != Verdict::Describes || *free_part == preset.data.free_part {
+            return None;
+        }
         let mut with = preset.clone();
         with.set(SIGNS, signs_text(found.turned).as_str().into()).ok()?;
-        with.set(FREE_PART, found.preset.data.free_part.as_str().into()).ok()?;
-        is_found.then_some(with)
+        with.set(FREE_PART, free_part.as_str().into()).ok()?;
+        Some(with)
     };
     alone().unwrap_or_else(|| preset.clone())
 }
@@ -179,6 +178,8 @@ fn of_all_in_contact(
     (options, own): (&Options, &mut Result<Fit, FitError>),
     progress: &dyn Progress,
 ) -> Option<Fit> {
+    /// Rows whose force is off the zero of the instrument by no more than this share of the largest pull are at that zero.
+    const AT_ZERO: f64 = 0.02;
     /// By how much χ² is smaller where that tells one from the other.
     const TELLS: f64 = 6.0;
     /// A fit that describes its points with a larger χ² per degree of freedom leaves much of them to outliers.
@@ -195,11 +196,16 @@ fn of_all_in_contact(
     }
     let branches = points.branches(&options.asked).ok()?;
     let apart: usize = branches.list.iter().map(|branch| branch.free.len()).sum();
-    // Rows at the zero of the force are apart.
+    // More rows than a wave has, or rows at the zero of the force, are apart. A tare is no measure: it is a share of the largest
+    // force, which may be a preload.
+    let least = branches.list.iter().flat_map(|branch| &branch.attached).map(|point| point.force);
+    let least = least.fold(f64::INFINITY, f64::min);
     let is_apart = |own: &Fit| {
-        let zero = preset.data.baseline.unwrap_or(0.0);
-        let off = own.instrument.baseline - zero;
-        own.chi_squared < LARGE && (apart > FEW_APART || off.abs() < branches.tare())
+        let off = own.instrument.baseline - preset.data.baseline.unwrap_or(0.0);
+        // The points have the signs of the model.
+        let pull = own.instrument.turned(own.turned).baseline - least;
+        let is_at_zero = off.abs() < AT_ZERO * pull;
+        own.chi_squared < LARGE && (apart > FEW_APART || is_at_zero)
     };
     if apart == 0 || own.as_ref().is_some_and(|own| is_apart(own)) {
         return None;

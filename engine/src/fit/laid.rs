@@ -25,16 +25,7 @@ pub(super) fn laid(
     let mut laid = preset.clone();
     // Its curve is the one that was fitted.
     laid.basis = BasisSpec::Exact;
-    // What was known before stays so: the next fit has the same points, which must count once.
-    let known = uncertain(preset, problem.abscissa, &preset.data.uncertain).unwrap_or_default();
-    let known: Vec<String> = problem
-        .priors
-        .iter()
-        .map(|prior| (&problem.parameters[prior.parameter], prior))
-        .filter(|(parameter, _)| known.iter().any(|known| known.target.key() == parameter.key()))
-        .map(|(parameter, prior)| written(parameter, prior))
-        .collect();
-    laid.data.uncertain = known.join(",");
+    laid.data.uncertain = known_before(preset, problem);
     let opening = found.material.work_of_adhesion;
     // A closing edge gains at most what an opening one costs, so the opening value must be set first.
     let is_closing = |of: &&FreeParameter| of.target == Target::Adhesion(Segment::Approach);
@@ -88,6 +79,20 @@ pub(super) fn laid(
         notes.push(format!("{START} is {start} in the fitted preset: its curve reaches the first points"));
     }
     laid
+}
+
+/// What is known with an error, as it is written in a preset.
+fn known_before(preset: &Preset, problem: &FitProblem) -> String {
+    // What was known before stays so: the next fit has the same points, which must count once.
+    let known = uncertain(preset, problem.abscissa, &preset.data.uncertain).unwrap_or_default();
+    let known: Vec<String> = problem
+        .priors
+        .iter()
+        .map(|prior| (&problem.parameters[prior.parameter], prior))
+        .filter(|(parameter, _)| known.iter().any(|known| known.target.key() == parameter.key()))
+        .map(|(parameter, prior)| written(parameter, prior))
+        .collect();
+    known.join(",")
 }
 
 /// A positive number with three digits, not below `x`.

@@ -41,9 +41,6 @@ use crate::units::number::{said, short, significant};
 use nalgebra::{DMatrix, DVector};
 use std::borrow::Cow;
 
-/// A tare of the force is wider than assumed where it is by this factor.
-const WIDER: f64 = 1.01;
-
 /// Fits the free keys of `preset` to `branches`.
 pub(super) fn fit_branches(
     preset: &Preset,
@@ -425,6 +422,8 @@ fn warned(
 
 /// That a tare of the force larger than it is assumed to be may come of another minimum, which is so on waves.
 fn of_wide_tare(problem: &FitProblem, branches: &Branches) -> Option<String> {
+    /// The factor from which it is larger, and not rounded.
+    const WIDER: f64 = 1.01;
     let is_of = |prior: &&Prior| problem.parameters[prior.parameter].target == Target::Baseline;
     let has_waves = problem.preset.gap.feature_length().is_some();
     let prior = problem.priors.iter().find(is_of).filter(|_| has_waves && branches.baseline.is_none())?;

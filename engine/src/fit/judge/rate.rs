@@ -137,7 +137,7 @@ fn grows(
         let how = if is_near || edge.segment == Segment::Approach {
             ""
         } else {
-            ". --model rate fits one, with how much it grows"
+            ". --model rate tells how much it grows"
         };
         let sentence = format!(
             "a work of adhesion that {} with the speed of the {} describes the points better{}{from_end}{size} ({} standard errors). \
