@@ -18,7 +18,7 @@ def _rebuilt(kind: Type[BaseException], sentence: Tuple[Any, ...], attributes: D
 
 class _Portable(BaseException):
     """An exception that comes out of another process as it went in: otherwise its keyword arguments would be lost, and a pool of
-    processes would wait for ever for one that cannot be read."""
+    processes would wait forever for one that cannot be read."""
 
     def __reduce__(self) -> Tuple[Any, ...]:
         return _rebuilt, (type(self), self.args, self.__dict__)

@@ -300,7 +300,7 @@ fn rows_that_are_only_taken_to_be_apart_are_told() {
     assert_eq!(document["parameters"], taken["parameters"]);
     // Modulus and adhesion follow from one another here, which their errors do not say.
     let notes = document["notes"].to_string();
-    assert!(notes.contains("E* and γ are known together far better than alone"), "{notes}");
+    assert!(notes.contains("a combination of E* and γ is known far better than either of them"), "{notes}");
 }
 
 /// Values known with an error add to the errors of the fit, whether given by option or by key.

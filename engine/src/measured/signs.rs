@@ -47,10 +47,12 @@ impl UnsignedPoints<'_> {
         let x: Vec<f64> = points.iter().map(|point| point.x).collect();
         let force: Vec<f64> = points.iter().map(|point| point.force).collect();
         // What contact radii or the names of the branches say is no guess.
-        let known = by_radii(points).or_else(|| self.by_segments(points));
+        let named = self.by_segments(points);
+        let is_timed = points.iter().all(|point| point.time.is_finite());
+        let known = by_radii(points).or(named.filter(|_| is_timed));
         let end = match self.free {
             FreePart::Found => {
-                if let Some(found) = by_jumps(points, self.segments, known) {
+                if let Some(found) = by_jumps(points, self.segments, known, named) {
                     turn(points, found.turned);
                     let [x, force] = found.turned;
                     notes.extend(x.then(|| self.turned_x()));
@@ -91,11 +93,10 @@ impl UnsignedPoints<'_> {
         Orientation { unless_apart: other, ..self.of_force(points, turned, notes) }
     }
 
-    /// Whether the sign of x is reversed, by the branches that a column names; `None` where they disagree, x stands
-    /// still, or no times show that the file was not written backwards.
+    /// Whether the sign of x is reversed, by the branches that a column names; `None` where they disagree, or x stands still.
+    /// Without times, the file may have been written backwards.
     fn by_segments(&self, points: &[MeasuredPoint]) -> Option<bool> {
-        let is_timed = points.iter().all(|point| point.time.is_finite());
-        let of = self.segments.filter(|_| is_timed)?;
+        let of = self.segments?;
         let ways = [Segment::Approach, Segment::Retraction].map(|segment| {
             let runs = runs(points, of, segment);
             let gained: f64 = runs.iter().filter_map(|run| gained(run.iter().map(|point| point.x))).sum();
@@ -179,11 +180,13 @@ fn end_of(x: &[f64], span: ValueRange) -> [bool; 2] {
 }
 
 /// The signs for which the force jumps up from the contact to rows apart, and rises with x where the bodies are pressed
-/// together most; only those with the sign of x that is `known`, if it is.
+/// together most; only those with the sign of x that is `known`, if it is. Against the sign by which a column names
+/// the branches, `named`, only a jump to a level force counts: on waves, a snap read backwards may be as large as the last one.
 fn by_jumps(
     points: &[MeasuredPoint],
     segments: Option<&[Segment]>,
     known: Option<bool>,
+    named: Option<bool>,
 ) -> Option<Orientation> {
     let pieces = match segments {
         None => one_way(points),
@@ -204,7 +207,8 @@ fn by_jumps(
             let found = jump(&x, &force)
                 .filter(|jump| jump.at >= if force.len() < FEW { FEWEST } else { IN_CONTACT })
                 .filter(|jump| rises(&x[..jump.at], &force[..jump.at]) == Some(true))
-                .filter(|jump| may_rest || !rests(&middle(&x[jump.at..]), &x));
+                .filter(|jump| may_rest || !rests(&middle(&x[jump.at..]), &x))
+                .filter(|_| named != Some(!turned[0]) || free_end(&x, &force)[0]);
             sum += found.map_or(0.0, |jump| jump.deviations);
         }
         sum
@@ -274,8 +278,11 @@ pub(super) fn is_swapped(points: &[MeasuredPoint]) -> bool {
     const ROWS: usize = 20;
     const STILL: f64 = 0.015;
     const GOES_ON: f64 = 0.02;
-    /// So many standard deviations of a row, over the root of the rows of a half.
+    /// So many standard deviations of a row, over the root of the rows of a half, may be noise, or are none.
+    const POSSIBLE: f64 = 4.0;
     const CERTAIN: f64 = 8.0;
+    /// In stiff contact the force changes by more of its range than x does, but not by so many times as much.
+    const STEEPER: f64 = 4.0;
     /// However small the noise is, a change by less than this share of the range counts as none.
     const NONE: f64 = 0.002;
     let (x, force): (Vec<f64>, Vec<f64>) = points.iter().map(|point| (point.x, point.force)).unzip();
@@ -289,13 +296,14 @@ pub(super) fn is_swapped(points: &[MeasuredPoint]) -> bool {
     let rows: Vec<f64> = (0..x.len()).map(|row| row as f64).collect();
     let [still, goes_on] = [&x, &force].map(|of| {
         let noise = scatter_over(&rows, of).unwrap_or(0.0) / range(of.iter().copied());
-        CERTAIN * noise / ((count / 2) as f64).sqrt()
+        noise / ((count / 2) as f64).sqrt()
     });
     // After a long jump, what x changes by in contact is a small share of its range, but it is more than noise.
-    let (still, goes_on) = (still.clamp(NONE, STILL), goes_on.max(GOES_ON));
-    [0..count, x.len() - count..x.len()]
-        .into_iter()
-        .any(|rows| share(&x, rows.clone()) < still && share(&force, rows) > goes_on)
+    let (still, goes_on) = ((POSSIBLE * still).clamp(NONE, STILL), (CERTAIN * goes_on).max(GOES_ON));
+    [0..count, x.len() - count..x.len()].into_iter().any(|rows| {
+        let [of_x, of_force] = [&x, &force].map(|of| share(of, rows.clone()));
+        of_x < still && of_force > goes_on.max(STEEPER * of_x)
+    })
 }
 
 /// Whether P rises with x in the outer fifth of x; `None` if it neither rises nor falls.

@@ -73,7 +73,7 @@ pub struct Pull {
     pub snaps: Vec<Snap>,
     /// The moment at which the bodies are apart; `None` where the programme ends before that.
     pub last_contact: Option<Moment>,
-    /// All that the edge dissipated; `None` where a dead load falls for ever.
+    /// All that the edge dissipated; `None` where a dead load keeps falling.
     pub dissipated: Option<f64>,
     /// What is missing in the balance of work and energy, relative to the work.
     pub balance: f64,
@@ -339,7 +339,7 @@ impl Going<'_> {
             let apart = Moment {
                 time,
                 contact_radius: 0.0,
-                // A dead load falls for ever.
+                // A dead load keeps falling.
                 approach: if control == Control::Force { f64::NEG_INFINITY } else { before.approach },
                 force: if control == Control::Force { before.force } else { 0.0 },
                 dissipated: dissipated.unwrap_or(before.dissipated),

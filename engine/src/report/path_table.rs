@@ -196,8 +196,8 @@ fn outcome(report: &PathReport) -> String {
         }
         None => writeln!(
             text,
-            "{lost_energy} before {last}: {}; under a dead load the loss at {last} has no bound: the bodies fall apart \
-             for ever",
+            "{lost_energy} before {last}: {}; under a dead load the loss at {last} has no bound: the bodies keep \
+             falling apart",
             energy(before)
         ),
     };

@@ -5,10 +5,11 @@ use crate::explorer::command::Id;
 use crate::explorer::curve::CurveData;
 use crate::explorer::effect::Effect;
 use crate::explorer::model::{CurveError, Level, Model};
-use crate::explorer::node::NodeKind;
+use crate::explorer::node::{Node, NodeKind};
 use crate::explorer::status_line::of_before;
 use crate::explorer::walk::Action;
 use crate::mend::WordedFault;
+use pulloff_engine::quasistatic::Limit;
 use std::sync::Arc;
 
 /// The curve on the screen stays; the one being computed is no longer wanted.
@@ -87,9 +88,21 @@ pub(super) fn curve_came(
     }
 }
 
-/// Solves the walker's state for the values of the curve, if it does not lie on it.
+/// Whether a state of one disc that was reached under another control is a limit point of the present one.
+fn becomes_limit(model: &Model, node: &Node) -> bool {
+    /// A limit point is known to the square root of rounding, as a share of its radius.
+    const KNOWN: f64 = 1e-7;
+    let Some(curve) = &model.curve else { return false };
+    let s = node.state.contact_radius;
+    let is_here = |limit: &Limit| (limit.contact_radius - s).abs() <= KNOWN * s;
+    let is_free = node.on_path.is_none() && !node.has_rings() && node.control != curve.case.control;
+    is_free && curve.limits.iter().any(is_here)
+}
+
+/// Solves the walker's state for the values of the curve, if it does not lie on it, or if another control makes it a limit point.
 pub(super) fn solve_again(model: &mut Model) -> Option<Vec<Effect>> {
-    model.history.current().filter(|node| !model.is_on_curve(node) && !node.is_apart())?;
+    let is_open = |node: &&Node| !model.is_on_curve(node) || becomes_limit(model, node);
+    model.history.current().filter(is_open).filter(|node| !node.is_apart())?;
     let again = Action::solve(&model.history, model.preset.path.begin)?;
     Some(walk(model, again))
 }

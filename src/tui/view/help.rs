@@ -91,7 +91,7 @@ const SHORT: &[(&str, &str)] = &[
     ("W", "beside a pin: the energy lost"),
     ("lost 3e-4", "energy lost in jumps; with a + after it, plus that of a jump without bound"),
     ("dead band", "what the area that closed costs more when it opens: the rest of what a loop loses"),
-    ("no bound", "a dead load falls for ever: the loss at the last contact has no limit"),
+    ("no bound", "a dead load keeps falling: the loss at the last contact has no limit"),
     ("by area agrees", "the same loss as the area between the curve and the way of the device"),
     ("admissible", "whether the bodies stay apart outside the contact"),
     ("Ctrl-Z", "back to the shell; fg returns"),

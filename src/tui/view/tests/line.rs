@@ -39,6 +39,17 @@ fn a_typed_command_does_what_its_key_does() {
 }
 
 #[test]
+fn the_largest_pull_is_a_limit_point_once_the_force_is_controlled() {
+    let mut screen = Screen::new("wavy-sphere");
+    screen.keys("L:control force\r");
+    let node = screen.app.model.history.current().unwrap();
+    assert!(node.is_limit(Control::Force), "{:?}", node.kind);
+    // A dead load at the largest pull has no equilibrium beyond: the bodies come apart.
+    screen.keys("n");
+    assert!(screen.app.model.history.current().unwrap().is_apart());
+}
+
+#[test]
 fn what_is_wrong_is_said_with_its_column_and_stays_to_be_mended() {
     let mut screen = Screen::new("wavy-sphere");
     screen.keys(":step 3 x\r");
