@@ -262,9 +262,12 @@ impl PlotArguments {
         let results = SweepResults::open(path).map_err(MapChartError::from)?;
         let quantity = self.quantity_of(&results)?;
         let partial = results.partial().map_err(MapChartError::from)?;
-        console.warn(partial.map(|has| format!("--sweep {has}: the figure shows no others")).as_slice());
+        let partial = partial.map(|has| format!("--sweep {has}: the figure shows no others"));
         let without = results.without(quantity).map_err(MapChartError::from)?;
-        console.warn(without.map(|rows| format!("--sweep {rows}")).as_slice());
+        let warn = || {
+            console.warn(partial.as_slice());
+            console.warn(without.as_ref().map(|rows| format!("--sweep {rows}")).as_slice());
+        };
         let axis = match &results.axes[..] {
             [] => {
                 let what = "--sweep: an ensemble without an axis has one row of statistics and nothing to draw it over";
@@ -282,10 +285,13 @@ impl PlotArguments {
                 }
                 let median = statistic(quantity, "q50");
                 let column = if results.has_statistics_of(quantity) { &median } else { quantity };
-                return Ok((MapChart::of(&results, axes, column)?.svg(self.width), None));
+                let chart = MapChart::of(&results, axes, column)?;
+                warn();
+                return Ok((chart.svg(self.width), None));
             }
         };
         let figure = self.part(series::figure(&results, axis, quantity)?)?;
+        warn();
         let data = if self.data { Some(table::csv(&figure)?) } else { None };
         Ok((svg::svg(&figure, self.width), data))
     }

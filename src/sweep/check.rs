@@ -36,16 +36,15 @@ impl Checked {
 
 /// Checks the results at `path`: the hash beside them, the header, and the number, axes and cells of each row; those of
 /// an ensemble, then its members.
-/// Errors: The first line that is not the expected one, and [`OutputError::NotOurs`].
+/// Errors: The first line that is not the expected one, and [`OutputError::Sidecar`].
 pub fn check(path: &Path) -> Result<Checked, OutputError> {
     let shown = || show_path(path);
-    let not_ours = |cause| OutputError::NotOurs { path: shown(), cause };
-    let (sidecar, text) = Sidecar::read(path).map_err(not_ours)?;
-    let layout = sidecar.layout(path, &text).map_err(not_ours)?;
+    let (sidecar, text) = Sidecar::read(path)?;
+    let layout = sidecar.layout(path, &text)?;
     if hash(&text).as_ref() != Some(&sidecar.identity) {
         let what = "the sweep in it does not have the hash given there: it was changed by hand".to_owned();
         let path = show_path(&sidecar::path(path));
-        return Err(not_ours(SidecarError::Unknown { path, what }));
+        return Err(SidecarError::Unknown { path, what }.into());
     }
     let shard = sidecar.shard();
     let of = shard.len(sidecar.rows);

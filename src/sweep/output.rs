@@ -48,6 +48,9 @@ pub enum OutputError {
         "{path}: already exists, and is not known to belong to a sweep ({cause}); --overwrite replaces it"
     )]
     NotOurs { path: String, cause: SidecarError },
+    /// What stands beside results does not say what they are.
+    #[error(transparent)]
+    Sidecar(#[from] SidecarError),
     /// The file beside the results exists without them.
     #[error("{path}: already exists, and does not describe this sweep; --overwrite replaces it")]
     Described { path: String },
@@ -71,7 +74,7 @@ pub enum OutputError {
 }
 
 mend!(
-    OutputError, as 0 of Write | Rows, as cause of Io | NotOurs, never Threads,
+    OutputError, as 0 of Write | Rows | Sidecar, as cause of Io | NotOurs, never Threads,
     always Busy | Described | OtherSweep | OtherShard | Changed
 );
 

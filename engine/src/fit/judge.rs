@@ -24,6 +24,7 @@ mod touch;
 mod untold;
 
 pub(super) use range::{of_first_pull, unseen};
+pub(super) use rate::untried;
 pub(super) use scores::BRANCHES;
 pub(super) use spring::of_spring;
 

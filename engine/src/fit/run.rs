@@ -6,7 +6,7 @@ use super::determined::{Determined, determined};
 use super::fitted::{Fitted, too_small, unmoved, values};
 use super::intervals::intervals;
 use super::judge::{
-    Evidence, doubts, extent, of_first_pull, of_hidden, of_sparse, of_spring, of_unclear, reasons, unseen,
+    Evidence, doubts, extent, of_first_pull, of_hidden, of_sparse, of_spring, of_unclear, reasons, unseen, untried,
 };
 use super::laid::laid;
 use super::least_squares::Ending;
@@ -230,6 +230,7 @@ impl<'a> Posed<'a> {
         let verdict = verdict(ending, what.errors.is_some(), &reasons);
         notes.extend(growth(&problem, u, &what, verdict));
         notes.extend(of_starts(&starts, verdict));
+        notes.extend((verdict == Verdict::DoesNotDescribe).then(|| untried(&problem, &reasons)).flatten());
         let residuals = beside(&problem, &solved.minimum.at.residuals, solved.scale);
         let doubt = approached.and_then(|approached| approached.doubt);
         let warnings = warned(evidence, (preset, branches), &reasons, &mut fitted).into_iter().chain(doubt);

@@ -166,17 +166,19 @@ fn outcome(report: &PathReport) -> String {
         let _ = writeln!(text, "turn: asked for the {of} {}, reached {}", at(turn.asked), at(turn.reached));
     }
     let shown = |quantity, x| ascii_unit(units, quantity, x, |x| significant(x, 7));
+    let delta = |at: &StateReport| shown(Quantity::Length, at.approach);
     let is_apart = report.events.last().is_some_and(|event| event.after.is_none());
     let so_far = if is_apart { "" } else { " up to the end" };
     if let Some(at) = &totals.largest_pull {
         let ratio = ratio(at.force, report.head.problem.critical_force);
         let none = if at.force < 0.0 { "" } else { ": nothing pulls" };
-        let _ = writeln!(text, "largest pull{so_far}: {}{ratio}{none}", shown(Quantity::Force, at.force));
+        let pull = shown(Quantity::Force, at.force);
+        let _ = writeln!(text, "largest pull{so_far}: {pull}{ratio}{none}, at delta {}", delta(at));
     } else if report.has_reached_its_end {
         text += "largest pull: none: the bodies are still pressed together where the path ends\n";
     }
     if let Some(at) = &totals.farthest {
-        let _ = writeln!(text, "farthest{so_far}: delta {}", shown(Quantity::Length, at.approach));
+        let _ = writeln!(text, "farthest{so_far}: delta {}", delta(at));
     }
     let rings = |state: &StateReport| state.contacts.iter().filter(|edges| edges[0] > 0.0).count();
     let most = report.states.iter().map(|state| rings(&state.state)).max().unwrap_or(0);

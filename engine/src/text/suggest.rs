@@ -16,12 +16,22 @@ pub fn closest<'a>(word: &str, known: impl IntoIterator<Item = &'a str>) -> Opti
     best(known.into_iter().map(|k| (likeness(&word, k), k)))
 }
 
+/// What other texts call the last part of a key.
+const SYNONYMS: [(&str, &str); 4] = [
+    ("surface_energy", "work_of_adhesion"),
+    ("adhesion_energy", "work_of_adhesion"),
+    ("tip_radius", "radius_of_curvature"),
+    ("sphere_radius", "radius_of_curvature"),
+];
+
 /// The dotted key most similar to `key`, as a whole or in its last part; `labels` gives other names of a key.
 pub fn closest_key<'a>(key: &str, known: impl IntoIterator<Item = (&'a str, &'a str)>) -> Option<&'a str> {
     if key.len() > LONGEST {
         return None;
     }
     let lower = key.to_lowercase();
+    let synonym = SYNONYMS.iter().find(|(name, _)| *name == last(&lower));
+    let lower = synonym.map_or(lower, |(_, of)| (*of).to_owned());
     best(known.into_iter().map(|(k, label)| {
         let whole = likeness(&lower, k);
         let part = likeness(last(&lower), last(k));
@@ -70,6 +80,7 @@ mod tests {
         assert_eq!(key("E"), Some("material.effective_modulus"));
         assert_eq!(key("gama"), Some("material.work_of_adhesion"));
         assert_eq!(key("gap.amp"), Some("gap.amplitude"));
+        assert_eq!(key("material.surface_energy"), Some("material.work_of_adhesion"));
         assert_eq!(key("colour"), None);
         assert_eq!(key(&"x".repeat(1000)), None);
         assert_eq!(closest("wavy_sphere", ["sphere", "wavy-sphere"]), Some("wavy-sphere"));

@@ -16,7 +16,7 @@ impl App {
 
     /// Offers to resume a session.
     pub fn offer(&mut self, what: &str, snapshot: Snapshot) {
-        let question = format!("{what} Enter or y resumes it, Esc or n starts afresh.");
+        let question = format!("{what} Enter resumes it, Esc starts afresh.");
         self.overlay = Some(Dialog::Offer(ResumeOffer { question, snapshot: Box::new(snapshot) }));
     }
 
@@ -32,7 +32,7 @@ impl App {
                 self.model = model;
                 effects
             }
-            KeyCode::Esc | KeyCode::Char('n' | 'N') => Vec::new(),
+            KeyCode::Esc => Vec::new(),
             _ if self.keymap.command(key) == Some(Id::Quit) => self.command_key(key),
             // A key pressed while the screen comes up must not answer it.
             _ => self.lay(Dialog::Offer(offer)),

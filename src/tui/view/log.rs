@@ -400,8 +400,3 @@ fn cells(
 fn disagrees(event: &EventReport) -> bool {
     event.losses_agree() == Some(false)
 }
-
-/// How many events of each kind a path has, for [`super::result`].
-pub(super) fn snaps(path: &PathReport) -> usize {
-    path.events.iter().filter(|event| matches!(event.kind, "snap" | "snap-in")).count()
-}

@@ -9,6 +9,7 @@ use crate::tui::keymap::Keymap;
 use crate::tui::theme::Theme;
 use pulloff_engine::gap::Gap;
 use pulloff_engine::preset::{Parameter, Row, Value, groups};
+use pulloff_engine::preset::schema::Fallback;
 use pulloff_engine::problem::{Control, Groups};
 use pulloff_engine::report::number::{short, with_unit};
 use pulloff_engine::units::{Quantity, UnitSystem};
@@ -169,7 +170,7 @@ pub(super) fn shown(app: &App) -> Vec<ShownValue> {
             ShownValue::new(label, width, |room| fitting(&texts, room))
         };
         match value {
-            None => ShownValue::word(label, "auto".to_owned()),
+            None => ShownValue::word(label, unset(&row).to_owned()),
             Some(Value::Number(x)) => number(label, x),
             // Its stiffness has a cell of its own.
             Some(Value::Control(Control::Stiffness(_))) => ShownValue::word(label, "stiffness".to_owned()),
@@ -248,7 +249,7 @@ fn knob_line(
     let least = if error.is_some() { name.chars().count() } else { 9 };
     let room = usize::from(width).saturating_sub(2 + least + ends.chars().count());
     let text = match value {
-        None => "auto".to_owned(),
+        None => unset(row).to_owned(),
         Some(Value::Number(x)) => fitting(&numbers(theme, units, row, *x, error), room),
         // It has a line of its own.
         Some(Value::Control(Control::Stiffness(_))) => "stiffness".to_owned(),
@@ -262,6 +263,15 @@ fn knob_line(
     let label = format!("{mark}{name:<padded$} ");
     let style = if turning.is_some() { theme.selection() } else { ratatui::style::Style::new() };
     Line::styled(format!("{label}{text}{ends}"), style)
+}
+
+/// What stands for a value that is not given: what it is then, in a word.
+fn unset(row: &Parameter) -> &'static str {
+    match row.fallback {
+        Fallback::Described(words) if words.starts_with("none") => "none",
+        Fallback::Described("0") => "0",
+        _ => "auto",
+    }
 }
 
 /// The groups, as many per line as fit; the one with the key `chosen` is selected.

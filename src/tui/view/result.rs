@@ -1,6 +1,5 @@
 //! The outcome of the path: A, B, the last contact, the snaps and their losses; with a pin, its numbers beside them.
 
-use super::log::snaps;
 use super::parts::{is_selected, pair, panel};
 use crate::explorer::pins::{Pin, letter};
 use crate::explorer::{CurveData, Model, ScreenPanel};
@@ -152,19 +151,25 @@ fn lines(theme: Theme, model: &Model, path: &PathReport, room: usize) -> Vec<Lin
     let lost = totals.dissipated.unwrap_or(totals.dissipated_before_last_contact);
     let energy = |lost| with_unit(&model.preset.units, Quantity::Energy, lost, theme.ascii, loss);
     let fall = if totals.dissipated.is_none() { "+" } else { "" };
-    let mut count = head(" ", pair(theme, "snaps ", &format!("{}", snaps(path))));
     let lost = format!("{}{fall}", energy(lost));
-    let last = match totals.dead_band {
-        // The panel has no line more than without one.
-        Some(band) => {
-            count.spans.push(Span::raw("  "));
-            count.spans.extend(pair(theme, "in jumps ", &lost));
-            head(" ", pair(theme, "dead band ", &energy(band.dissipated)))
-        }
-        None => head(" ", pair(theme, "lost ", &lost)),
-    };
-    lines.extend([count, last]);
+    let count = head(" ", pair(theme, "snaps ", &snaps(path)));
+    match totals.dead_band {
+        // What has no room goes: the log shows the snaps, too.
+        Some(band) => lines.extend([
+            head(" ", pair(theme, "in jumps ", &lost)),
+            head(" ", pair(theme, "dead band ", &energy(band.dissipated))),
+            count,
+        ]),
+        None => lines.extend([count, head(" ", pair(theme, "lost in all ", &lost))]),
+    }
     lines
+}
+
+/// How many snaps a path has: those of an edge that opens, and beside them those of one that closes, if there are any.
+fn snaps(path: &PathReport) -> String {
+    let [opening, closing] =
+        ["snap", "snap-in"].map(|kind| path.events.iter().filter(|event| event.kind == kind).count());
+    if closing == 0 { opening.to_string() } else { format!("{opening} + {closing} in") }
 }
 
 /// The width of a name.
@@ -217,9 +222,8 @@ fn beside(theme: Theme, model: &Model, pin: &Pin, compared: &Compared<'_>) -> Ve
     let bands = totals.map(|totals| totals.dead_band.map(|band| energy(band.dissipated)));
     // The panel has no line more than without one.
     if bands == [None, None] {
-        #[expect(clippy::cast_precision_loss)]
-        let counts = [path, other].map(|path| Some(snaps(path) as f64));
-        lines.push(row("snaps", counts));
+        let [now, pin] = [path, other].map(snaps);
+        lines.push(head(" snaps".to_owned(), &now, &pin, ""));
     } else {
         lines.push(row("band", bands));
     }

@@ -181,7 +181,10 @@ fn words(app: &App, width: u16) -> Vec<FooterWord> {
                 .chain([take])
                 .collect()
         }
-        Some(Dialog::Prompt(_) | Dialog::Offer(_)) => [accept, back].map(in_list).to_vec(),
+        Some(Dialog::Offer(_)) => {
+            [(Id::Edit, "resume", KeyCode::Enter), (Id::Cancel, "start afresh", KeyCode::Esc)].map(in_list).to_vec()
+        }
+        Some(Dialog::Prompt(_)) => [accept, back].map(in_list).to_vec(),
         Some(Dialog::Choose(_) | Dialog::Help(_)) => {
             let through = [(Id::Up, "up", KeyCode::Up), (Id::Down, "down", KeyCode::Down)];
             through.into_iter().chain([accept, back]).map(in_list).collect()

@@ -303,7 +303,7 @@ fn views_follow_each_other_and_three_fit_on_a_wide_screen() {
         assert!(screen.text(80, 24).contains(titles[0]), "{}", screen.text(80, 24));
     }
     screen.keys("gcTTT");
-    assert!(screen.text(80, 24).contains("lost 7.9"), "{}", screen.text(80, 24));
+    assert!(screen.text(80, 24).contains("lost in all 7.9"), "{}", screen.text(80, 24));
     screen.keys("ttt");
     let text = screen.text(200, 60);
     for title in ["P/Pc over δ", "P/Pc over s/λ", "┬contact"] {
@@ -488,7 +488,7 @@ fn what_lies_behind_a_turned_value_is_passed_by_and_did_not_happen_at_it() {
     let path = screen.app.model.path().unwrap();
     let [all, passed] = [path.totals.dissipated.unwrap(), path.events[0].dissipated.unwrap()].map(loss);
     let sums = format!("lost up to here 0 of {all}, {passed} passed by");
-    assert!(text.contains(&sums) && text.contains(&format!("lost {all}")), "{sums} {text}");
+    assert!(text.contains(&sums) && text.contains(&format!("lost in all {all}")), "{sums} {text}");
     assert!(screen.text(80, 24).contains(&format!("0 of {all}")), "{text}");
     screen.keys("nn>");
     let text = screen.text(160, 45);

@@ -17,6 +17,7 @@
 
 use super::super::chance::beyond_t;
 use super::super::problem::FitProblem;
+use super::super::pulled::is_pulled;
 use super::super::solve::SolvedFit;
 use super::super::track::Mover;
 use super::super::verdict::{Reason, UNTOLD};
@@ -64,6 +65,20 @@ pub(super) fn of_rate(evidence: Evidence) -> Option<Reason> {
             let may = edge.is_measured && (edge.is_timed() || lean >= LEANING);
             may.then(|| untold(evidence, edge, lean)).flatten()
         })
+    })
+}
+
+/// What to try where the model does not describe a retraction with times, and no `reasons` name a speed: where the law is large, the
+/// fit has taken up what one step from it would show.
+pub fn untried(problem: &FitProblem, reasons: &[Reason]) -> Option<String> {
+    let (segment, branches) = moving(problem);
+    let is_timed = branches.iter().flatten().all(|i| problem.data[*i].point.time.is_finite());
+    let is_static = !is_pulled(&problem.preset) && problem.preset.cohesion().is_none();
+    let is_named = reasons.iter().any(|reason| KINDS.contains(&reason.kind));
+    (segment == Segment::Retraction && is_timed && is_static && !is_named).then(|| {
+        "the rows have times: a work of adhesion that grows with the speed of the edge, as that of soft matter does, may look \
+         like this. --model rate fits it"
+            .to_owned()
     })
 }
 

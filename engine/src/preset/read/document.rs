@@ -70,6 +70,13 @@ impl Sheet {
                         Some(held) if row.kind == Kind::Points => Ok(Value::Points(Arc::clone(&held.points))),
                         _ => located(self.files, &row, row.check(value)?, folder),
                     });
+                    // A curve may be gone from beside a preset that is good without it.
+                    let value = value.map_err(|invalid| match (invalid, place) {
+                        (Invalid::Made { key, cause }, LayerOrigin::File(_)) if row.kind == Kind::Points => {
+                            Invalid::Made { key, cause: format!("{cause}; --set data.file=none leaves it out") }
+                        }
+                        (invalid, _) => invalid,
+                    });
                     self.put(&row, value, origin);
                 }
                 (other, None, Some(table)) => self.mistake(origin, not_table(table, found(other))),

@@ -162,6 +162,8 @@ pub(super) fn doubt_of_offset(
     if middle.is_some_and(|middle| change(middle) < LITTLE) {
         return None;
     }
+    // A fit with one G would find the offset at which G changes least.
+    let model = if attached(branches).any(|point| point.time.is_finite()) { " --model rate" } else { "" };
     let effect = middle.map_or_else(String::new, |(row, here, there)| {
         let energy = |g: f64| said(&preset.units, Quantity::EnergyPerArea, g);
         let of = found.map_or_else(String::new, |found| format!(", which is that of {},", found.by));
@@ -169,6 +171,6 @@ pub(super) fn doubt_of_offset(
     });
     Some(format!(
         "data.offset is not given, so x is taken as the approach: with another offset G is another{effect}. Fit it first \
-         (pulloff fit with data.offset free), or give it with --set data.offset="
+         (pulloff fit{model} with data.offset free), or give it with --set data.offset="
     ))
 }
