@@ -249,12 +249,14 @@ pub type ColumnHead = (String, Option<String>);
 /// The columns of a header. A unit stands in brackets or parentheses, or, if its dimension is one of `dimensions`,
 /// after a slash or a space.
 ///
-/// Text in brackets is not split, and belongs to the cell before it.
+/// Text in brackets or quotation marks is not split; that in brackets belongs to the cell before it.
 pub fn heads(line: &str, separator: Separator, dimensions: &[Dimension]) -> Vec<ColumnHead> {
     let mut cells: Vec<ColumnHead> = Vec::new();
     let mut at: ColumnHead = Default::default();
     let mut open: Option<(char, String)> = None;
+    let (has_pairs, mut is_quoted) = (line.matches('"').count() % 2 == 0, false);
     for c in line.chars() {
+        is_quoted ^= c == '"' && has_pairs;
         match (&mut open, separator) {
             (Some((close, unit)), _) if c == *close => {
                 let unit = unit.trim().to_owned();
@@ -272,7 +274,9 @@ pub fn heads(line: &str, separator: Separator, dimensions: &[Dimension]) -> Vec<
             (None, _) if c == '[' || c == '(' => {
                 open = Some((if c == '[' { ']' } else { ')' }, String::new()));
             }
-            (None, Separator::Character(parting)) if c == parting => cells.push(std::mem::take(&mut at)),
+            (None, Separator::Character(parting)) if c == parting && !is_quoted => {
+                cells.push(std::mem::take(&mut at));
+            }
             (None, Separator::Spaces) if c.is_whitespace() => {
                 if !(at.0.is_empty() && at.1.is_none()) {
                     cells.push(std::mem::take(&mut at));

@@ -15,16 +15,17 @@ other threads run, shows a bar if tqdm is installed, and stops on Ctrl-C.
 from __future__ import annotations
 
 import os
-from operator import index
 from typing import Any, Dict, Iterable, List, Mapping, NamedTuple, Optional, Sequence, Tuple, Union
 
 from . import _engine
 from ._afm import AfmCurve, read_afm
+from ._arguments import checked, whole
 from ._problem import PresetText, Problem
 from ._progress import Progress, told
 from ._table import Table
 from ._toml import written
 from .errors import (
+    ArgumentError,
     Cancelled,
     ComputationError,
     DataError,
@@ -52,6 +53,7 @@ __version__ = _engine.__version__
 
 __all__ = [
     "AfmCurve",
+    "ArgumentError",
     "Cancelled",
     "ComputationError",
     "DataError",
@@ -115,6 +117,7 @@ def quantities() -> List[Quantity]:
     return [Quantity(*row) for row in _engine.quantities()]
 
 
+@checked
 def fit_together(
     problems: Sequence[Problem],
     free: Union[str, Sequence[str], None] = None,
@@ -144,10 +147,11 @@ def fit_together(
     FitError, DataError
         The fit gives no result; the points, or what is asked of them, are refused.
     """
-    keys = [free] if isinstance(free, str) else None if free is None else list(free)
+    if not all(isinstance(problem, Problem) for problem in problems):
+        raise ArgumentError("problems must be a sequence of Problem")
     natives = [problem._native for problem in problems]
     with told(progress, "fit") as tell:
-        document, native, direction = _engine.fitted_together(natives, keys, robust, scan, tell)
+        document, native, direction = _engine.fitted_together(natives, free, robust, scan, tell)
     first = problems[0]
     result = Together(document, first._of(native, first._source, first._base))
     if direction is not None:
@@ -155,6 +159,7 @@ def fit_together(
     return result
 
 
+@checked
 def sweep(
     spec: Union[str, "os.PathLike[str]", Mapping[str, Any]],
     *,
@@ -223,14 +228,13 @@ def sweep(
             raise SpecError(f"{where}{error}") from error
     if jobs is None:
         jobs = len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
-    jobs = index(jobs)
     if not 1 <= jobs <= 1024:
         raise SpecError(f"jobs = {jobs} is out of range: it must be from 1 to 1024")
     if row_limit is not None and not 0.0 < row_limit < float("inf"):
         raise SpecError(f"row_limit = {row_limit!r} is out of range: it must be a time in seconds above 0")
     wanted = {
         "jobs": jobs,
-        "shard": shard if shard is None or isinstance(shard, str) else "/".join(str(index(n)) for n in shard),
+        "shard": shard if shard is None or isinstance(shard, str) else "/".join(str(whole("shard", n)) for n in shard),
         "row_limit": row_limit,
         "out": out,
         "resume": resume,
@@ -247,6 +251,7 @@ def sweep(
     return swept
 
 
+@checked
 def merge(
     parts: Iterable[Union[str, "os.PathLike[str]"]],
     out: Union[str, "os.PathLike[str]"],

@@ -51,7 +51,7 @@ def sampled(
 
     def of(radii: NDArray[np.float64]) -> NDArray[np.float64]:
         # A copy: the function may write into it.
-        gaps = np.asarray(h(radii.copy()), dtype=float)
+        gaps = plain(h(radii.copy()))
         if gaps.shape != radii.shape:
             raise PresetError(f"h returned the shape {gaps.shape} for radii of the shape {radii.shape}", key="gap.file")
         wrong = np.flatnonzero(~np.isfinite(gaps))

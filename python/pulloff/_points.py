@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
+import json
 import os
-from operator import index
 from typing import TYPE_CHECKING, Any, Mapping, Optional, Sequence, Tuple, Union
 
 from . import _engine
 from ._afm import AfmCurve
+from ._arguments import path
 from ._gap import unmasked
 from .errors import DataError
 
@@ -17,25 +18,23 @@ if TYPE_CHECKING:
 else:
     from ._numpy import np
 
-#: The units of what a curve says about its instrument.
-_STATED = {"spring constant": "N/m", "tip radius": "m"}
-
 Range = Tuple[Optional[float], Optional[float]]
 
 
 def points_of(data: Any, in_si: bool) -> Tuple[str, bytes]:
     """The name and the text of the table that the engine reads."""
-    stated = []
+    # What an instrument states, and that columns without a unit are in SI.
+    stated = {}
     if isinstance(data, AfmCurve):
         if not in_si:
             raise DataError("the curve is in SI, but the problem is in reduced units: set units = 'SI'")
-        stated = [f"# {name}: {value!r} {_STATED[name]}" for name, value in data.settings.items()]
+        stated = dict(data.settings)
     if isinstance(data, Mapping):
         columns = dict(data)
     elif hasattr(data, "columns") and hasattr(data, "__getitem__"):
         columns = {name: data[name] for name in data.columns}
-    elif isinstance(data, (str, bytes, os.PathLike)):
-        name = os.fsdecode(data)
+    elif isinstance(data, (str, os.PathLike)):
+        name = path("data", data)
         return name, _engine.read_file(name)
     else:
         raise DataError(f"data is of the type {type(data).__name__}: it must be a file, a DataFrame or a dict of columns")
@@ -44,11 +43,11 @@ def points_of(data: Any, in_si: bool) -> Tuple[str, bytes]:
     if len(lengths) != 1 or any(array.ndim != 1 for array in arrays.values()):
         shapes = ", ".join(f"{name} {array.shape}" for name, array in arrays.items())
         raise DataError(f"the columns must be one-dimensional and equally long: {shapes or 'there are none'}")
-    units = {name: _engine.unit_of(name) if in_si else "" for name in arrays}
-    header = ",".join(_bare(name) + (f" [{units[name]}]" if units[name] else "") for name in arrays)
+    header = ",".join(_bare(name) for name in arrays)
+    remarks = ["# BEGIN METADATA", f"# {json.dumps(stated)}", "# END METADATA"] if in_si else []
     cells = [_cells(array) for array in arrays.values()]
     rows = (",".join(row) for row in zip(*cells))
-    return "data", "\n".join([*stated, header, *rows, ""]).encode(errors="replace")
+    return "data", "\n".join([*remarks, header, *rows, ""]).encode(errors="replace")
 
 
 def _bare(text: str) -> str:
@@ -84,11 +83,7 @@ def free_part_of(given: Union[Range, str, None]) -> Optional[str]:
     return "x=" + "..".join("" if np.isinf(end) else repr(end) for end in (lo, hi))
 
 
-def skip_of(given: int) -> int:
-    try:
-        skip = index(given)
-    except TypeError as error:
-        raise DataError(f"skip = {given!r}: it must be a number of rows") from error
+def skip_of(skip: int) -> int:
     if not 0 <= skip <= 1_000_000:
         raise DataError(f"skip = {skip} is out of range: it must be from 0 to 1000000")
     return skip
@@ -97,7 +92,6 @@ def skip_of(given: int) -> int:
 def draws_of(bootstrap: Optional[int], seed: int) -> Optional[Tuple[int, int]]:
     if bootstrap is None:
         return None
-    bootstrap, seed = index(bootstrap), index(seed)
     if not 10 <= bootstrap <= 100_000:
         raise DataError(f"bootstrap = {bootstrap} is out of range: it must be from 10 to 100000")
     if not 0 <= seed < 2**64:

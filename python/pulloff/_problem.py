@@ -4,14 +4,14 @@ from __future__ import annotations
 
 import json
 import os
-from operator import index
 from typing import TYPE_CHECKING, Any, Callable, Dict, Iterator, List, Literal, Mapping, Optional, Sequence, Tuple, Union
 
 from . import _engine
+from ._arguments import checked, mapping, number, whole
 from ._gap import column, plain, sampled
 from ._points import Range, draws_of, free_part_of, points_of, range_of, skip_of
 from ._progress import Progress, told
-from .errors import ComputationError, DataError, MapError, NotConverged, NotDetermined, PresetError, PullError
+from .errors import ArgumentError, ComputationError, DataError, MapError, NotConverged, NotDetermined, OutputError, PresetError, PullError
 from .results import Fit, Map, Path, Pull, Speeds, Stability, Trace
 
 if TYPE_CHECKING:
@@ -62,8 +62,9 @@ class Problem:
         The name of a preset that comes with the package (see :func:`pulloff.presets`); a file: a path object, or a string
         with a ``/`` or ending in ``.toml``; or the text of a preset, more than one line, as :meth:`to_toml` gives it.
     changes : dict, optional
-        Changed values by their keys, as ``{"gap.amplitude": 3e-3}``. A string is read as the program's ``--set`` reads it, with
-        its unit if the problem has units: ``{"gap.amplitude": "2 um"}``.
+        Changed values by their keys, as ``{"gap.amplitude": 3e-3}``. A number is in SI or in reduced units, like all that a
+        problem gives back. A string is read as the program's ``--set`` reads it: with its unit, as in
+        ``{"gap.amplitude": "2 um"}``, and without one in the parameter's own unit, if it has one.
 
     Raises
     ------
@@ -82,6 +83,9 @@ class Problem:
         self, source: Union[str, "os.PathLike[str]"], changes: Optional[Mapping[str, Value]] = None
     ) -> None:
         said = "a text"
+        if not isinstance(source, (str, os.PathLike)) or not isinstance(os.fspath(source), str):
+            kind = type(source).__name__
+            raise ArgumentError(f"source is of the type {kind}: it must be a name, a path, or the text of a preset")
         if not isinstance(source, str):
             native, said = _engine.Problem.of_file(os.fspath(source)), repr(os.fspath(source))
         elif isinstance(source, PresetText):
@@ -93,7 +97,8 @@ class Problem:
         else:
             native, said = _engine.Problem.shipped(source), repr(str(source))
         self._base, self._source = native, said
-        self._native = native.replace(dict(changes)) if changes else native
+        changes = {} if changes is None else mapping("changes", changes)
+        self._native = native.replace(changes) if changes else native
 
     @classmethod
     def _of(
@@ -122,6 +127,7 @@ class Problem:
         return {key: value for key, value in self._native.values().items() if before.get(key) != value}
 
     @classmethod
+    @checked
     def from_gap(
         cls,
         r: ArrayLike,
@@ -163,7 +169,7 @@ class Problem:
             The rows or a value are refused.
         """
         if callable(h):
-            radii, gaps = sampled(h, float(np.asarray(r, dtype=float)), tolerance)
+            radii, gaps = sampled(h, number("r", r), tolerance)
         else:
             radii, gaps = column("r", r), column("h", h)
             if radii.shape != gaps.shape:
@@ -172,21 +178,22 @@ class Problem:
             [
                 f"units = {json.dumps(str(units))}",
                 "[material]",
-                f"effective_modulus = {float(effective_modulus)!r}",
-                f"work_of_adhesion = {float(work_of_adhesion)!r}",
+                f"effective_modulus = {effective_modulus!r}",
+                f"work_of_adhesion = {work_of_adhesion!r}",
                 "[gap]",
                 'shape = "profile"',
                 'file = "arrays"',
                 "[path]",
-                f"start_contact_radius = {float(start_contact_radius)!r}",
+                f"start_contact_radius = {start_contact_radius!r}",
             ]
         )
         native = _engine.Problem.of_rows(text, radii, gaps, str(units) == "SI")
-        return cls._of(native.replace(dict(changes)) if changes else native, "from_gap", native)
+        return cls._of(native.replace(changes) if changes else native, "from_gap", native)
 
+    @checked
     def replace(self, changes: Optional[Mapping[str, Value]] = None, **more: Value) -> "Problem":
         """The same problem with changed values, checked as a whole."""
-        return self._of(self._native.replace({**(changes or {}), **more}), self._source, self._base)
+        return self._of(self._native.replace({**(changes or {}), **mapping("changes", more)}), self._source, self._base)
 
     @property
     def title(self) -> str:
@@ -202,6 +209,7 @@ class Problem:
         travel with the text; :meth:`save` writes both to disk."""
         return PresetText._of(self._native)
 
+    @checked
     def save(self, path: Union[str, "os.PathLike[str]"], *, overwrite: bool = False) -> None:
         """Writes the preset to a file, and beside it the gap and the measured curve that it needs: ``NAME.gap.csv`` and
         ``NAME.data.csv`` beside ``NAME.toml``. The program and :class:`Problem` can open it.
@@ -212,13 +220,15 @@ class Problem:
             One of them exists and must not be overwritten, or cannot be written; then nothing is replaced.
         """
         path = os.fspath(path)
+        if os.path.isdir(path):
+            raise OutputError(f"{path} is a folder: path must name a file")
         stem = os.path.basename(path)
         stem = stem[: -len(".toml")] if stem.endswith(".toml") else stem
         native = self._native.named(f"{stem}.gap.csv", f"{stem}.data.csv")
         text = PresetText._of(native)
         folder = os.path.dirname(path)
         files = {os.path.join(folder, name): content for name, content in text.files.items()}
-        _engine.write_files({**files, path: text.encode()}, bool(overwrite))
+        _engine.write_files({**files, path: text.encode()}, overwrite)
 
     def __getitem__(self, key: str) -> Value:
         values = self._native.values()
@@ -249,6 +259,7 @@ class Problem:
         title = f": {self.title}" if self.title else ""
         return f"<pulloff.Problem of {self._source}{changed}{title}>"
 
+    @checked
     def trace(self, *, theory: bool = False, progress: Progress = None) -> Trace:
         """The equilibrium curve from the start inward, by arc length.
 
@@ -263,8 +274,9 @@ class Problem:
             The curve cannot be computed; :class:`StartError` if there is no equilibrium at the start.
         """
         with told(progress, "trace") as tell:
-            return Trace(self._native.trace(bool(theory), tell))
+            return Trace(self._native.trace(theory, tell))
 
+    @checked
     def unload(
         self,
         control: Optional[Control] = None,
@@ -290,6 +302,7 @@ class Problem:
         with told(progress, "unload") as tell:
             return Path(problem.unload(areas, admissibility, tell))
 
+    @checked
     def cycle(
         self,
         control: Optional[Control] = None,
@@ -325,10 +338,8 @@ class Problem:
         named = [*given, *([] if to_control is None else ["to_control"])]
         if len(named) > 1:
             raise PresetError(f"a loop turns round once: give only one of {' and '.join(named)}", key=named[1])
-        if to_control is not None:
-            to_control = float(to_control)
-            if not abs(to_control) < float("inf"):
-                raise PresetError(f"to_control = {to_control!r} is not a number at which a loop could turn round")
+        if to_control is not None and not abs(to_control) < float("inf"):
+            raise PresetError(f"to_control = {to_control!r} is not a number at which a loop could turn round")
         problem = self._under(control)
         if given:
             problem = problem.replace(given)
@@ -336,6 +347,7 @@ class Problem:
         with told(progress, "cycle") as tell:
             return Path(problem.cycle(to_control, areas, tell))
 
+    @checked
     def pull(
         self,
         rate: Union[float, Sequence[float], None] = None,
@@ -356,8 +368,7 @@ class Problem:
         hold_force : float or sequence of float
             Dead loads, negative for a pull; ``failures`` of the result says how long each holds.
         """
-        rates = [float(x) for x in np.atleast_1d([] if rate is None else rate)]
-        loads = [float(x) for x in np.atleast_1d(hold_force)]
+        rates, loads = list(rate or ()), list(hold_force)  # type: ignore[arg-type]
         for value in rates:
             if not 0 < value < float("inf"):
                 raise PullError(f"rate = {value} is out of range: it must be above 0")
@@ -368,6 +379,7 @@ class Problem:
         with told(progress, "pull") as tell:
             return Pull(problem.pull(rates, loads, tell))
 
+    @checked
     def stability(
         self, control: Optional[Control] = None, *, samples: int = 1501, progress: Progress = None
     ) -> Stability:
@@ -380,13 +392,13 @@ class Problem:
         samples : int
             The number of equally spaced radii from the end of the path to its start, 2 to 1000000; cusps and corners are added.
         """
-        samples = index(samples)
         if not 2 <= samples <= 1_000_000:
             raise ComputationError(f"samples = {samples} is out of range: it must be from 2 to 1000000")
         problem = self._under(control)
         with told(progress, "stability") as tell:
             return Stability(problem.stability(samples, tell))
 
+    @checked
     def map(
         self,
         x: Axis,
@@ -412,7 +424,11 @@ class Problem:
         """
         if isinstance(y, str) and y not in ("control", "approach", "force"):
             raise MapError(f"y = {y!r} is not known: it must be 'control', 'approach', 'force', or (key, from, to)")
-        columns, rows = (index(count) for count in cells)
+        try:
+            columns, rows = cells
+        except (TypeError, ValueError) as error:
+            raise ArgumentError(f"cells = {cells!r}: it must be (columns, rows)") from error
+        columns, rows = whole("cells[0]", columns), whole("cells[1]", rows)
         if not (1 <= columns <= 1000 and 1 <= rows <= 1000):
             raise MapError(f"cells = {cells!r} is out of range: columns and rows must be from 1 to 1000")
         problem = self._under(control)
@@ -420,6 +436,7 @@ class Problem:
         with told(progress, "map") as tell:
             return Map(problem.map(_axis(x), other, ordinate, columns, rows, tell))
 
+    @checked
     def fit(
         self,
         data: Union[str, "os.PathLike[str]", Mapping[str, ArrayLike], Any, None] = None,
@@ -511,9 +528,9 @@ class Problem:
             "free_part": free_part_of(free_part),
             "signs": signs,
             "skip": skip_of(skip),
-            "free": [free] if isinstance(free, str) else None if free is None else list(free),
+            "free": free,
             "uncertain": None if uncertain is None else ",".join(f"{key}={error}" for key, error in uncertain.items()),
-            "models": [model] if isinstance(model, str) else list(model or ()),
+            "models": model or [],
             "robust": robust,
             "sigma": (sigma_x, sigma_force),
             "x_range": range_of("x_range", x_range),
@@ -533,6 +550,7 @@ class Problem:
             raise NotDetermined(direction, result=result)
         return result
 
+    @checked
     def speeds(
         self,
         data: Union[str, "os.PathLike[str]", Mapping[str, ArrayLike], Any, None] = None,
@@ -564,6 +582,7 @@ class Problem:
         with told(progress, "speeds") as tell:
             return Speeds(_engine.speeds(self._native, points, reading, skip_of(skip), of, tell))
 
+    @checked
     def pressure(self, s: float, r: ArrayLike) -> NDArray[np.float64]:
         """The contact pressure at the radii ``r`` in equilibrium at the contact radius ``s``, compression positive.
 
@@ -573,6 +592,7 @@ class Problem:
         """
         return self._across(s, r)[1]
 
+    @checked
     def gap(self, s: float, r: ArrayLike) -> NDArray[np.float64]:
         """The gap between the deformed bodies at the radii ``r`` in equilibrium at the contact radius ``s``.
 
@@ -585,16 +605,13 @@ class Problem:
     def _across(self, s: float, r: ArrayLike) -> Tuple[float, NDArray[np.float64], NDArray[np.float64]]:
         radii = plain(r)
         flat = radii.reshape(-1)
-        approach, pressure, gap = self._native.across(float(s), flat)
+        approach, pressure, gap = self._native.across(s, flat)
         return approach, pressure.reshape(radii.shape), gap.reshape(radii.shape)
 
     def _under(self, control: Optional[Control]) -> _engine.Problem:
         if control is None:
             return self._native
-        if isinstance(control, bool):
-            words = f"control = {control!r} is not a control: give 'displacement', 'force' or a stiffness"
-            raise PresetError(words, key="path.control")
-        given = control if isinstance(control, str) else f"stiffness={float(control)!r}"
+        given = control if isinstance(control, str) else f"stiffness={control!r}"
         return self._native.replace({"path.control": given})
 
 
@@ -612,9 +629,9 @@ def _of_state(text: str, rows: Any, points: Any) -> _engine.Problem:
 
 def _axis(axis: Axis) -> Tuple[str, float, float, bool]:
     words = "an axis must be (key, from, to) or (key, from, to, 'log')"
-    if isinstance(axis, str) or not 3 <= len(axis) <= 4 or (len(axis) == 4 and axis[3] != "log"):
+    if not isinstance(axis, Sequence) or not 3 <= len(axis) <= 4 or (len(axis) == 4 and axis[3] != "log"):
         raise MapError(f"{axis!r}: {words}")
     key, lo, hi = axis[:3]
     if not isinstance(key, str):
         raise MapError(f"{axis!r}: {words}")
-    return key, float(lo), float(hi), len(axis) == 4
+    return key, number(f"the start of {key}", lo), number(f"the end of {key}", hi), len(axis) == 4

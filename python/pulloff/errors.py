@@ -55,6 +55,10 @@ class PresetError(Error, ValueError):
         self.mistakes = tuple(mistakes)
 
 
+class ArgumentError(Error, TypeError):
+    """An argument of a type that the function does not take; the sentence names it."""
+
+
 class SpecError(Error, ValueError):
     """The spec of a sweep is refused; ``line`` says where, in the text or in the TOML made from a dict."""
 

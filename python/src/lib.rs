@@ -36,7 +36,6 @@ fn _engine(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_function(wrap_pyfunction!(fit::fitted_together, module)?)?;
     module.add_function(wrap_pyfunction!(fit::speeds, module)?)?;
     module.add_function(wrap_pyfunction!(problem::between, module)?)?;
-    module.add_function(wrap_pyfunction!(problem::unit_of, module)?)?;
     module.add_function(wrap_pyfunction!(problem::read_file, module)?)?;
     module.add_function(wrap_pyfunction!(problem::write_files, module)?)?;
     module.add_function(wrap_pyfunction!(sweep::sweep, module)?)?;

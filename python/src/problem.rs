@@ -12,7 +12,7 @@ use pulloff_engine::disc::exact::FAR;
 use pulloff_engine::disc::{Basis, ExactBasis, outside};
 use pulloff_engine::gap::shapes::{MeasuredGap, ProfileGap, ProfileRows, Smoothing};
 use pulloff_engine::gap::{Gap, Shape};
-use pulloff_engine::measured::{ColumnRole, PointsFile};
+use pulloff_engine::measured::PointsFile;
 use pulloff_engine::preset::measured::SHIPPED_DATA;
 use pulloff_engine::preset::read::{HeldFiles, read_holding, read_in};
 use pulloff_engine::preset::{Preset, Value, profile, shipped, write};
@@ -28,6 +28,7 @@ use pulloff_engine::stability::{COMPLIANCE, MapAxis};
 use pulloff_engine::text::{closest, quote, show_path};
 use pulloff_engine::theory;
 use pulloff_engine::units::Unit;
+use pyo3::exceptions::PyOverflowError;
 use pyo3::prelude::*;
 use pyo3::types::{PyBool, PyBytes, PyDict, PyFloat, PyInt, PyString};
 use std::hash::{DefaultHasher, Hash, Hasher};
@@ -73,13 +74,15 @@ fn value(preset: &Preset, key: &str, given: &Bound<'_, PyAny>) -> PyResult<Value
             &format!("{} must be a number or a string, not {}", quote(key), quote(&kind)),
         )
     };
-    if given.is_instance_of::<PyBool>() {
+    // That of numpy has one of two names, by its version.
+    let is_of_numpy = given.get_type().name().is_ok_and(|name| name == "bool_" || name == "bool");
+    if given.is_instance_of::<PyBool>() || is_of_numpy {
         return Err(other());
     }
     if given.is_instance_of::<PyString>() {
         let text: String = given.extract()?;
         let Some(row) = preset.row(key) else { return Ok(Value::Text(text)) };
-        return row.parse(&text).map_err(|error| errors::of_value(py, &error));
+        return preset.read(&row, &text).map_err(|error| errors::of_value(py, &error));
     }
     if !given.is_instance_of::<PyFloat>()
         && (given.is_instance_of::<PyInt>() || given.hasattr("__index__")?)
@@ -87,7 +90,11 @@ fn value(preset: &Preset, key: &str, given: &Bound<'_, PyAny>) -> PyResult<Value
     {
         return Ok(Value::Integer(n));
     }
-    given.extract::<f64>().map(Value::Number).map_err(|_| other())
+    let number = given.extract::<f64>().map(Value::Number);
+    number.map_err(|error| match error.is_instance_of::<PyOverflowError>(py) {
+        true => errors::of_type(py, key, &format!("{} is out of range: it must be at most 1e30", quote(key))),
+        false => other(),
+    })
 }
 
 /// `preset` with these changes, checked as a whole.
@@ -450,12 +457,6 @@ pub fn read_file(py: Python<'_>, path: PathBuf) -> PyResult<Bound<'_, PyBytes>> 
     let read =
         read_bytes(&path, profile::LARGEST).map_err(|error| errors::of_data(py, &error.to_string()))?;
     Ok(PyBytes::new(py, &read.0))
-}
-
-/// The SI unit of a column of this name in a measured curve; empty for a name that is unknown or states a unit.
-#[pyfunction]
-pub fn unit_of(column: &str) -> &'static str {
-    ColumnRole::of_bare(column).and_then(ColumnRole::si).unwrap_or("")
 }
 
 /// What makes two problems the same: the text of the preset without file names, and the contents of the files.

@@ -248,7 +248,7 @@ fn statistics<'py>(py: Python<'py>, spec: &Spec, made: &Rows) -> PyResult<Option
     for (column, cells) in spec.columns.iter().zip(&made.columns) {
         let found = at_points(cells, at, seed);
         for (which, (name, _)) in STATISTICS.iter().enumerate() {
-            let cell = |found: &Option<Statistics>| found.as_ref().and_then(|found| found.cells()[which]);
+            let cell = |found: &Option<Statistics>| Statistics::cells(found.as_ref())[which];
             let numbers = found.iter().map(|found| number(cell(found)));
             all.set_item(statistic(&column.name(), name), PyArray1::from_iter(py, numbers))?;
         }

@@ -92,7 +92,7 @@ def test_rows_are_mended_by_hand():
     assert none.rows["approach"]["free"] + none.rows["retraction"]["free"] == 0
     for wrong in ({"signs": "x=-"}, {"signs": "up"}, {"skip": -1}, {"skip": 1.5}, {"free_part": (1.0, 0.0)},
                   {"free_part": "x"}, {"free_part": (90.0, 91.0)}):
-        with pytest.raises(pulloff.DataError):
+        with pytest.raises((pulloff.DataError, pulloff.ArgumentError)):
             SPHERE.fit(whole, FREE, **wrong, **SIGMA)
 
 
@@ -264,3 +264,15 @@ def test_one_law_for_two_curves():
         pulloff.fit_together([lens, lens], free)
     with pytest.raises(pulloff.DataError, match="reduced units"):
         pulloff.fit_together([lens, SPHERE], free)
+
+
+def test_a_column_has_the_unit_of_its_name_as_in_a_file(tmp_path):
+    si = "units = 'SI'\n[material]\neffective_modulus=%r\nwork_of_adhesion=%r\n[gap]\nshape='sphere'\nradius_of_curvature=0.01\n"
+    truth = pulloff.Problem(si % (1e6, 1e-3) + "[path]\nstart_contact_radius=1.2e-4\n").trace()
+    guess = pulloff.Problem(si % (1.2e6, 8e-4) + "[path]\nstart_contact_radius=2e-4\n")
+    for head, x in (("approach [in]", truth.approach), ("radius [in]", truth.contact_radius), ("approach, in", truth.approach)):
+        columns = {head: x / 0.0254, "force [uN]": truth.force * 1e6}
+        found = guess.fit(columns, FREE).parameters
+        assert found["material.effective_modulus"] == pytest.approx(1e6, rel=1e-4), head
+    with pytest.raises(pulloff.DataError, match="unit"):
+        guess.fit({"approach [s]": truth.approach, "force": truth.force}, FREE)

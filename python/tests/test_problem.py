@@ -250,3 +250,42 @@ def test_arrays_of_any_make_are_taken():
         assert pulloff.Problem.from_gap(r, h, **OF) == wanted
     pressure = wanted.pressure(0.2, record["r"])
     assert np.array_equal(pressure, wanted.pressure(0.2, R), equal_nan=True)
+
+
+def test_arguments_are_refused_by_their_names():
+    problem = pulloff.Problem("wavy-sphere")
+    for call, name in [
+        (lambda: problem.unload(one_disc="no"), "one_disc"),
+        (lambda: problem.trace(theory=1), "theory"),
+        (lambda: problem.unload(control=np.True_), "control"),
+        (lambda: problem.cycle(to_force=True), "to_force"),
+        (lambda: problem.pull(rate=True), "rate"),
+        (lambda: problem.pull(hold_force=-1e-3 + 1j), "hold_force"),
+        (lambda: problem.stability(samples=2.5), "samples"),
+        (lambda: problem.map(("gap.amplitude", 1e-3, 2e-3), cells=(4.5, 4)), "cells"),
+        (lambda: problem.pressure("x", [0.1]), "s ="),
+        (lambda: problem.fit({}, free=1), "free"),
+        (lambda: problem.fit({}, uncertain="x"), "uncertain"),
+        (lambda: problem.save(""), "path"),
+        (lambda: problem.replace("x"), "changes"),
+        (lambda: pulloff.Problem(b"x"), "source"),
+        (lambda: pulloff.sweep({"preset": problem}, resume=None), "resume"),
+        (lambda: pulloff.fit_together("x"), "problems"),
+    ]:
+        with pytest.raises(pulloff.ArgumentError, match=name):
+            call()
+    with pytest.raises(pulloff.PresetError, match="gap.amplitude"):
+        problem.replace({"gap.amplitude": np.True_})
+
+
+def test_a_text_is_read_in_the_unit_of_its_parameter():
+    text = (
+        "units = 'SI'\n[material]\neffective_modulus=1e6\nwork_of_adhesion=0.05\n[gap]\nshape='formula'\n"
+        "formula='r^2/(2*R)+A*(1-cos(2*pi*r/L))'\n[gap.parameters]\nA={value=50,unit='nm'}\nR={value=1,unit='mm'}\n"
+        "L={value=20,unit='um'}\n[path]\nstart_contact_radius=8e-5\n"
+    )
+    problem = pulloff.Problem(text)
+    assert problem.replace({"gap.parameters.A": "60"})["gap.parameters.A"] == pytest.approx(60e-9)
+    assert problem.replace({"gap.parameters.A": "60 nm"})["gap.parameters.A"] == pytest.approx(60e-9)
+    # Numbers go out and in alike.
+    assert problem.replace({"gap.parameters.A": problem["gap.parameters.A"]}) == problem

@@ -11,7 +11,7 @@ use super::results::{ResultsError, SweepResults};
 use super::sidecar::{self, Sidecar};
 use super::spec::identity;
 use crate::store::atomic::{Overwrite, check, write_atomically};
-use pulloff_engine::sweep::ensemble::{STATISTICS, Statistics, at_points};
+use pulloff_engine::sweep::ensemble::{Statistics, at_points};
 use pulloff_engine::sweep::spec::{Design, points};
 use pulloff_engine::sweep::{Fault, Spec};
 use pulloff_engine::text::show_path;
@@ -134,7 +134,7 @@ pub fn summarize(results: &Path) -> Result<(), OutputError> {
     let mut table = beside.layout.header();
     for (point, own) in (0..count).zip(&all) {
         let cells = found.iter().map(|column| column[usize::try_from(point).unwrap_or_default()]);
-        let cells = cells.flat_map(|found| found.map_or([None; STATISTICS.len()], |found| found.cells()));
+        let cells = cells.flat_map(|found| Statistics::cells(found.as_ref()));
         let cells = cells.map(|cell| cell.map_or_else(String::new, |cell| cell.to_string()));
         let fault = own.fault(of).map_or_else(String::new, |fault| fault.to_string());
         let last = [own.there.to_string(), own.refused().to_string(), fault];

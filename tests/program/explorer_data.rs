@@ -321,7 +321,7 @@ fn a_foreign_header_asks_for_the_columns_and_the_answer_is_one_change() {
         (0..50).map(|i| format!("7,{},{}", 0.01 * f64::from(i), 0.1 * f64::from(i * i))).collect();
     std::fs::write(&path, format!("u1,u2,u3\n{}\n", rows.join("\n"))).unwrap();
     says(&mut session, &format!("data {}", path.display()));
-    assert!(session.status().contains("--columns approach=1,force=2"), "{}", session.status());
+    assert!(session.status().contains("data.columns \"approach=1,force=2\""), "{}", session.status());
     let Some(Question::Columns(foreign)) = session.model.question.take() else { panic!("nothing is asked") };
     let names: Vec<&str> = foreign.seen.iter().map(|seen| &*seen.name).collect();
     assert_eq!((&*foreign.shown, &names[..]), ("foreign.csv", &["u1", "u2", "u3"][..]));

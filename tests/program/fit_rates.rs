@@ -128,7 +128,7 @@ fn three_speeds_are_fitted_together() {
     assert!(written.contains("reference_speed") && !written.contains("exponent = 0.5\n"), "{written}");
     // A fast pull alone tells how much G grows, and whether the error of that holds.
     for (free, status, holds) in
-        [("gamma,v0", 0, "in base units\n"), ("gamma,v0,edge.exponent", 3, "; its error is not known")]
+        [("gamma,v0", 0, " J/m^2 (s/m)^n\n"), ("gamma,v0,edge.exponent", 3, "; its error is not known")]
     {
         let ended = home.run(&["fit", "fast.csv", "soft.toml", "--free", free]);
         let growth = ended.out.split_inclusive('\n').find(|line| line.contains("K = gamma/v0^n")).unwrap();

@@ -84,7 +84,9 @@ impl Fit {
         let together = pairs.filter(|(_, r)| r.abs() > TOGETHER);
         let sentence = |([j, i], r): ([usize; 2], f64)| {
             let [a, b] = [j, i].map(|k| letter(&self.preset, &self.parameters[k].key));
-            format!("a combination of {a} and {b} is known far better than either of them (correlation {r:+.4})")
+            format!(
+                "a combination of {a} and {b} is known far better than either of them (correlation {r:+.4})"
+            )
         };
         self.of_radius().into_iter().chain(together.map(sentence)).collect()
     }

@@ -6,7 +6,8 @@ use super::determined::{Determined, determined};
 use super::fitted::{Fitted, too_small, unmoved, values};
 use super::intervals::intervals;
 use super::judge::{
-    Evidence, doubts, extent, of_first_pull, of_hidden, of_sparse, of_spring, of_unclear, reasons, unseen, untried,
+    Evidence, doubts, extent, of_first_pull, of_hidden, of_sparse, of_spring, of_unclear, reasons, unseen,
+    untried,
 };
 use super::laid::laid;
 use super::least_squares::Ending;
@@ -36,8 +37,8 @@ use crate::measured::{Abscissa, Branches, FreePart, Noise, Origin, Segment};
 use crate::preset::{Preset, edge};
 use crate::problem::Start;
 use crate::progress::{Progress, ProgressPart};
-use crate::units::Quantity;
 use crate::units::number::{said, short, significant};
+use crate::units::{Quantity, UnitSystem};
 use nalgebra::{DMatrix, DVector};
 use std::borrow::Cow;
 
@@ -499,8 +500,9 @@ fn growth(problem: &FitProblem, u: &[f64], what: &Determined, verdict: Verdict) 
         _ => "; this error does not hold, as the model does not describe the points",
     };
     let error = error.map_or_else(String::new, |error| format!(" +- {}", significant(error, 2)));
+    let unit = if preset.units == UnitSystem::Reduced { "" } else { " J/m^2 (s/m)^n" };
     Some(format!(
-        "a fast edge costs K v^n more than gamma, with K = gamma/v0^n = {}{error} in base units{holds}",
+        "a fast edge costs K v^n more than gamma, with K = gamma/v0^n = {}{error}{unit}{holds}",
         significant(value, 4)
     ))
 }

@@ -486,10 +486,10 @@ impl Points {
         match (&self.segments, counts) {
             (Some(_), [0 | 1, 0 | 1]) => None,
             (None, [1, 0]) => {
-                Some("no column names the branches: by the order of x this is an approach".to_owned())
+                Some("no column names the branches: from the order of x, this is an approach".to_owned())
             }
             (None, [0, 1]) => {
-                Some("no column names the branches: by the order of x this is a retraction".to_owned())
+                Some("no column names the branches: from the order of x, this is a retraction".to_owned())
             }
             (None, [1, 1]) if parts[0].0 == Segment::Approach => Some(format!(
                 "no column names the branches: approach up to the largest x in row {}, retraction from there",

@@ -169,7 +169,7 @@ fn unused_length(header: &Header, wanted: &[WantedColumn]) -> Option<String> {
     (has(ColumnRole::is_contact) && !has(ColumnRole::is_approach)).then(|| {
         format!(
             "column {number}, \"{}\", is not used: if it is the approach, head it \"indentation\", or name all columns, \
-             as in --columns approach={number},force=…,radius=…",
+             as in --columns or data.columns \"approach={number},force=…,radius=…\"",
             quote(name),
             number = at + 1,
         )

@@ -112,7 +112,7 @@ pub enum CurveReadError {
     },
     /// Neither the header nor the user says what the columns are.
     #[error(
-        "line {line}: {} say what they are, as in --columns approach=1,force=2",
+        "line {line}: {} say what they are, as in --columns or data.columns \"approach=1,force=2\"",
         if names.is_empty() { format!("{cells} columns without a header;") } else { format!("the columns {names} are not known;") }
     )]
     Unknown {
@@ -137,7 +137,7 @@ pub enum CurveReadError {
     /// Two columns of lengths.
     #[error(
         "line {line}: the columns {names} are lengths, like those of a profile: a profile belongs in \
-         gap.file, with gap.shape=profile; for a measured curve, say what they are, as in --columns approach=1,force=2"
+         gap.file, with gap.shape=profile; for a measured curve, say what they are, as in --columns or data.columns \"approach=1,force=2\""
     )]
     Profile {
         /// The header.
@@ -151,7 +151,7 @@ pub enum CurveReadError {
         if known.is_empty() {
             String::new()
         } else {
-            format!("; the columns are {known}: say what they are, as in --columns approach=1,force=2")
+            format!("; the columns are {known}: say what they are, as in --columns or data.columns \"approach=1,force=2\"")
         }
     )]
     Lacks {

@@ -154,7 +154,11 @@ fn whole((name, unit): ColumnHead) -> ColumnHead {
     match unit {
         Some(text) if unit_named(&text, true).is_none() && text != "V" => {
             let longer = format!("{name} {text}");
-            if named(&longer).is_some() || named(&name).is_none() {
+            // A single letter is the symbol of another quantity only by chance: "approach [A]" is meant in ångström.
+            let role = |name: &str| named(name).map(|named| named.role);
+            let is_symbol =
+                text.chars().count() == 1 && role(&name).is_some() && role(&longer) != role(&name);
+            if !is_symbol && (named(&longer).is_some() || named(&name).is_none()) {
                 (longer, None)
             } else {
                 (name, Some(text))

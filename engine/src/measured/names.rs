@@ -4,11 +4,6 @@ use super::role::{ColumnRole, Segment, dimensions};
 use crate::units::Unit;
 
 impl ColumnRole {
-    /// What a header's name says, if it contains no unit.
-    pub fn of_bare(name: &str) -> Option<Self> {
-        named(name).filter(|named| named.unit.is_none()).map(|named| named.role)
-    }
-
     /// What a header's name says.
     pub fn of(name: &str) -> Option<Self> {
         named(name).filter(|named| named.side.is_none()).map(|named| named.role)

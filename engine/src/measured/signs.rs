@@ -16,7 +16,7 @@ const IN_CONTACT: usize = 10;
 /// Jumps to rows that go on count alone if they have this share of the clearest of all.
 const CLEAR: f64 = 0.25;
 /// The notes for a reversed sign of the force.
-const PULLED: &str = "the force is positive before the jump to the free part, where bodies attract: its sign is reversed \
+const PULLED: &str = "the force is positive before the jump to the free part, where the bodies attract each other: its sign is reversed \
     (data.baseline is in the numbers of the file)";
 const FALLS: &str = "the force falls as the bodies are pressed together: its sign is reversed (data.baseline is in the \
     numbers of the file)";

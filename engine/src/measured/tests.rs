@@ -479,7 +479,7 @@ fn a_column_that_may_be_the_approach_is_named() {
     for head in ["x_mm,F_mN,a_um", "x (mm),force (mN),contact radius (um)"] {
         let told = notes(head);
         assert!(told.contains("column 1, \"x"), "{told}");
-        assert!(told.contains("--columns approach=1,"), "{told}");
+        assert!(told.contains("data.columns \"approach=1,"), "{told}");
     }
     assert_eq!(notes("delta (mm),force (mN),contact radius (um)"), "");
     assert_eq!(notes("voltage (V),force (mN),contact radius (um)"), "");

@@ -171,9 +171,10 @@ fn outcome(report: &PathReport) -> String {
     let so_far = if is_apart { "" } else { " up to the end" };
     if let Some(at) = &totals.largest_pull {
         let ratio = ratio(at.force, report.head.problem.critical_force);
-        let none = if at.force < 0.0 { "" } else { ": nothing pulls" };
         let pull = shown(Quantity::Force, at.force);
-        let _ = writeln!(text, "largest pull{so_far}: {pull}{ratio}{none}, at delta {}", delta(at));
+        let place =
+            if at.force < 0.0 { format!(", at delta {}", delta(at)) } else { ": nothing pulls".to_owned() };
+        let _ = writeln!(text, "largest pull{so_far}: {pull}{ratio}{place}");
     } else if report.has_reached_its_end {
         text += "largest pull: none: the bodies are still pressed together where the path ends\n";
     }

@@ -68,13 +68,16 @@ impl Statistics {
         Some(Self { mean, deviation, quantiles: of_sorted(&sorted), mean_error, median_error, count })
     }
 
-    /// The numbers in the order of [`STATISTICS`].
-    pub fn cells(&self) -> [Option<Cell>; STATISTICS.len()] {
+    /// The numbers of what was `found` of a quantity, in the order of [`STATISTICS`]; where no member has a value, their count alone.
+    pub fn cells(found: Option<&Self>) -> [Option<Cell>; STATISTICS.len()] {
+        let Some(found) = found else {
+            return std::array::from_fn(|at| (STATISTICS[at].0 == COUNT).then_some(Cell::Count(0)));
+        };
         let number = |x: Option<f64>| x.map(Cell::Number);
-        let [q05, q25, q50, q75, q95] = self.quantiles.map(|x| number(Some(x)));
-        let errors = [self.mean_error, self.median_error].map(number);
-        let (mean, deviation) = (number(Some(self.mean)), number(self.deviation));
-        [mean, deviation, q05, q25, q50, q75, q95, errors[0], errors[1], Some(Cell::Count(self.count))]
+        let [q05, q25, q50, q75, q95] = found.quantiles.map(|x| number(Some(x)));
+        let errors = [found.mean_error, found.median_error].map(number);
+        let (mean, deviation) = (number(Some(found.mean)), number(found.deviation));
+        [mean, deviation, q05, q25, q50, q75, q95, errors[0], errors[1], Some(Cell::Count(found.count))]
     }
 }
 

@@ -114,7 +114,9 @@ fn tell_idle(model: &mut Model, key: &str, changed: &Preset) {
     let edge = &changed.edge;
     let missing = match edge.exponent {
         None => "edge.exponent gives the edge a speed",
-        Some(_) if edge.rate.is_none() && edge.steps.is_empty() => "path.rate or path.steps is set",
+        Some(_) if edge.rate.is_none() && edge.steps.is_empty() => {
+            "path.rate or path.steps is set; a fit takes the rate from the times of its file"
+        }
         Some(_) => return,
     };
     model.tell(Level::Info, format!("{key} has no effect until {missing}"));

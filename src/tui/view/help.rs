@@ -48,7 +48,10 @@ const SHORT: &[(&str, &str)] = &[
     ("δ  P  s", "approach, force (a pull is negative), contact radius: the outermost edge"),
     ("E*  γ  R", "effective modulus, work of adhesion, radius of the sphere"),
     ("P/Pc", "the force over the pull-off force of the smooth sphere, 3πγR/2"),
-    ("A/λ  λ/R", "amplitude of the waves over their length (crest to trough is 2A), their length over the radius of the sphere"),
+    (
+        "A/λ  λ/R",
+        "amplitude of the waves over their length (crest to trough is 2A), their length over the radius of the sphere",
+    ),
     ("γ'", "2πγ/(E*R): adhesion against stiffness"),
     ("λ²/AR", "above 8.58 the gap rises all the way out; below, it has valleys around the axis"),
     ("α", "Johnson's √(2γλ/(π²E*A²)): large where adhesion flattens the waves"),
@@ -89,7 +92,10 @@ const SHORT: &[(&str, &str)] = &[
         "of a pull at a rate: five of the six jumps of the slow path leave a peak in its force",
     ),
     ("W", "beside a pin: the energy lost"),
-    ("lost 3e-4", "energy lost in jumps, the first touch and the last contact included; with a + after it, plus that of a jump without bound"),
+    (
+        "lost 3e-4",
+        "energy lost in jumps, the first touch and the last contact included; with a + after it, plus that of a jump without bound",
+    ),
     ("dead band", "what the area that closed costs more when it opens: the rest of what a loop loses"),
     ("no bound", "a dead load keeps falling: the loss at the last contact has no limit"),
     ("by area agrees", "the same loss as the area between the curve and the way of the device"),
@@ -237,7 +243,7 @@ fn title(help: &Help) -> String {
             format!("{page}  /{}: {} of {}, n and N go on", help.pattern, found.number, found.of)
         }
         (None, None) if help.pattern.is_empty() => {
-            format!("{page} (Tab: the next page, / searches, Esc closes)")
+            format!("{page} (Tab: the next page, / searches, Esc goes back)")
         }
         (None, None) => format!("{page}  /{}: not found", help.pattern),
     }

@@ -153,10 +153,10 @@ fn draw_prompt(frame: &mut Frame<'_>, area: Rect, app: &App, prompt: &Prompt) {
 fn heading_of(choose: &Choose) -> String {
     let can_delete = choose.current().is_some_and(|(_, item)| item.delete.is_some());
     let delete = if can_delete { ", D deletes" } else { "" };
-    let keys = format!("{}: Enter takes{delete}, Esc closes", choose.title);
+    let keys = format!("Enter accepts{delete}, Esc goes back");
     match &*choose.filter {
-        "" => format!("{keys}, letters filter"),
-        filter => format!("with \"{}\": {keys}", sanitize(filter, 20)),
+        "" => format!("{}: {keys}, letters filter", choose.title),
+        filter => format!("{} (filter \"{}\"): {keys}", choose.title, sanitize(filter, 20)),
     }
 }
 

@@ -8,8 +8,8 @@ use crate::tui::app::App;
 use crate::tui::keymap::Keymap;
 use crate::tui::theme::Theme;
 use pulloff_engine::gap::Gap;
-use pulloff_engine::preset::{Parameter, Row, Value, groups};
 use pulloff_engine::preset::schema::Fallback;
+use pulloff_engine::preset::{Parameter, Row, Value, groups};
 use pulloff_engine::problem::{Control, Groups};
 use pulloff_engine::report::number::{short, with_unit};
 use pulloff_engine::units::{Quantity, UnitSystem};
@@ -258,7 +258,13 @@ fn knob_line(
     // A word matters more than the sign that it can be turned.
     let (ends, room) =
         if text.chars().count() > room { ("", room + ends.chars().count()) } else { (ends, room) };
-    let text: String = text.chars().take(room).collect();
+    let text = match text.chars().count() {
+        count if count > room => {
+            let end = if theme.ascii { '.' } else { '\u{2026}' };
+            text.chars().take(room.saturating_sub(1)).chain([end]).collect()
+        }
+        _ => text,
+    };
     let padded = usize::from(width).saturating_sub(2 + text.chars().count()).clamp(least, 9);
     let label = format!("{mark}{name:<padded$} ");
     let style = if turning.is_some() { theme.selection() } else { ratatui::style::Style::new() };

@@ -182,7 +182,9 @@ fn words(app: &App, width: u16) -> Vec<FooterWord> {
                 .collect()
         }
         Some(Dialog::Offer(_)) => {
-            [(Id::Edit, "resume", KeyCode::Enter), (Id::Cancel, "start afresh", KeyCode::Esc)].map(in_list).to_vec()
+            [(Id::Edit, "resume", KeyCode::Enter), (Id::Cancel, "start afresh", KeyCode::Esc)]
+                .map(in_list)
+                .to_vec()
         }
         Some(Dialog::Prompt(_)) => [accept, back].map(in_list).to_vec(),
         Some(Dialog::Choose(_) | Dialog::Help(_)) => {

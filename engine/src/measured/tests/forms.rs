@@ -114,7 +114,7 @@ impl FileForm {
         let mut read = parse(&self.bytes, &ColumnSpec::default());
         if !self.option.is_empty() {
             let refusal = read.expect_err(name).to_string();
-            assert!(refusal.contains("--columns approach=1,force=2"), "{name}: {refusal}");
+            assert!(refusal.contains("data.columns \"approach=1,force=2\""), "{name}: {refusal}");
             assert!(columns(&self.bytes).unwrap().len() > 1, "{name}");
             read = parse(&self.bytes, &ColumnSpec::parse(self.option).unwrap());
         }
@@ -345,17 +345,14 @@ fn settings_are_found_in_every_usual_form() {
 }
 
 #[test]
-fn a_unit_in_a_name_is_not_given_twice() {
-    for (name, role) in [
-        ("force", Some(ColumnRole::Force)),
-        ("Normal force", Some(ColumnRole::Force)),
-        ("force [nN]", None),
-        ("force (nN)", None),
-        ("force_nN", None),
-        ("position / um", None),
-        ("height (measured)", Some(ColumnRole::Position)),
-        ("nothing known", None),
-    ] {
-        assert_eq!(ColumnRole::of_bare(name), role, "{name}");
+fn a_letter_in_brackets_is_no_other_quantity() {
+    let file = |unit: &str| format!("approach [{unit}],force [nN]\n{}", two(",", 1.0, 1.0));
+    for unit in ["A", "a", "S"] {
+        let refused = parse(file(unit).as_bytes(), &ColumnSpec::default()).unwrap_err().to_string();
+        assert!(refused.contains(unit), "{refused}");
     }
+    assert_eq!(
+        parse(file("angstrom").as_bytes(), &ColumnSpec::default()).unwrap().columns[0].role,
+        ColumnRole::Approach
+    );
 }

@@ -155,7 +155,7 @@ fn what_comes_next_and_the_keys_of_a_list_are_not_cut() {
     assert!(text.contains("displacement control. Space steps outward, n to the next event"), "{text}");
     screen.keys("c");
     let text = screen.text(120, 40);
-    assert!(text.contains("Esc closes, letters filter"), "{text}");
+    assert!(text.contains("Esc goes back, letters filter"), "{text}");
 }
 
 #[test]

@@ -297,11 +297,14 @@ fn a_preset_of_ones_own_is_deleted_after_a_question_and_no_other() {
     let store = Store::at(screen.folder.path(), &[]);
     let (_, _) = store.save("mine", &screen.app.model.preset, None, Overwrite::Never).unwrap();
     screen.keys("oD");
-    assert!(screen.text(120, 40).contains("Open a preset: Enter takes, Esc closes"), "a shipped one stays");
+    assert!(
+        screen.text(120, 40).contains("Open a preset: Enter accepts, Esc goes back"),
+        "a shipped one stays"
+    );
     for _ in 0..crate::store::shipped::SHIPPED.len() {
         screen.keys("j");
     }
-    assert!(screen.text(120, 40).contains("Enter takes, D deletes"));
+    assert!(screen.text(120, 40).contains("Enter accepts, D deletes"));
     screen.keys("D");
     let asked = screen.text(120, 40);
     assert!(asked.contains("for good?") && asked.contains("mine.toml"), "{asked}");

@@ -18,6 +18,9 @@ pub(super) fn of_spreadsheets() -> Vec<FileForm> {
             let rows = lines(&rows(), |_, x, p| format!("\"{}\",\"{}\"", comma(x), comma(p)));
             format!("\"Indentation (nm)\",\"Force (nN)\"\n{rows}")
         }),
+        form("a comma within the quoted names", {
+            format!("\"indentation, nm\",\"force, nN\"\n{}", two(",", 1.0, 1.0))
+        }),
         form("decimal commas between spaces", {
             let rows = lines(&rows(), |_, x, p| format!("  {}   {}", comma(x), comma(p)));
             format!("indentation/nm force/nN\n{rows}")
