@@ -156,8 +156,9 @@ fn told(fit: &Fit) -> String {
     let holds = (fit.verdict == Verdict::Describes).then(|| fit.verdict.sentence());
     let reasons = fit.reasons.iter().map(|reason| &*reason.sentence);
     let reasons = holds.into_iter().chain(reasons).chain(fit.warnings.iter().map(String::as_str));
-    let outliers =
-        if fit.outliers > 0 { format!(", {}", counted(fit.outliers, "outlier")) } else { String::new() };
+    let outliers = fit.chi_squared_without_outliers.map_or_else(String::new, |chi| {
+        format!(", {} without {}", short(chi, 3), counted(fit.outliers, "outlier"))
+    });
     let begins =
         format!("{ended}: χ² {}{outliers} ({}: the report)", short(fit.chi_squared, 3), Id::About.named());
     let together = fit.known_together();

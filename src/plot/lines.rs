@@ -6,7 +6,7 @@ use crate::figure::{Axis, Figure};
 use pulloff_engine::preset::Preset;
 use pulloff_engine::report::MapReport;
 use pulloff_engine::report::map::AxisReport;
-use pulloff_engine::text::headline;
+use pulloff_engine::text::{greek, headline};
 
 /// The figure of `report`, with `preset` at its position.
 pub fn figure(report: &MapReport, preset: &Preset) -> Figure {
@@ -14,7 +14,7 @@ pub fn figure(report: &MapReport, preset: &Preset) -> Figure {
     let (x, y) = (places(&report.x), places(&report.y));
     let figure = laid(report, preset, &x, &y);
     let titled = |axis: Axis, of: &AxisReport| {
-        let words = preset.row(&of.key).map(|row| headline(&row.meaning).to_owned());
+        let words = preset.row(&of.key).map(|row| greek(headline(&row.meaning)).replace(" pi ", " π "));
         let symbol = words.map(|words| format!("{words}, {}", axis.symbol));
         Axis { symbol: symbol.unwrap_or(axis.symbol), ..axis }
     };

@@ -35,6 +35,8 @@ pub struct Fit {
     pub correlations: Option<Vec<Vec<f64>>>,
     /// Σr²/(n − p), r in σ.
     pub chi_squared: f64,
+    /// The same without the rows that are outliers; `None` where there are none.
+    pub chi_squared_without_outliers: Option<f64>,
     /// Σr²/n of the points in contact, and of those apart.
     pub chi_squared_of: [Option<f64>; 2],
     /// The degrees of freedom of the error that is known least well.

@@ -59,6 +59,18 @@ pub(super) fn beside(problem: &FitProblem, residuals: &DVector<f64>, scale: f64)
     problem.data.iter().enumerate().map(of).collect()
 }
 
+/// Σr²/(n − p) without the rows that are outliers; `None` where there are none.
+pub(super) fn without_outliers(problem: &FitProblem, solved: &SolvedFit, all: &[Residual]) -> Option<f64> {
+    let per = problem.per_point();
+    let mut kept = solved.minimum.at.residuals.clone();
+    for (i, _) in all.iter().enumerate().filter(|(_, row)| row.outlier) {
+        kept.rows_mut(per * i, per).fill(f64::NAN);
+    }
+    let kept: Vec<f64> = problem.real(&kept).into_iter().filter(|r| !r.is_nan()).collect();
+    let left = kept.len().saturating_sub(problem.taken()).max(1) as f64;
+    all.iter().any(|row| row.outlier).then(|| kept.iter().map(|r| r * r).sum::<f64>() / left)
+}
+
 /// Σr²/n of the points in contact or apart.
 pub(super) fn of_part(problem: &FitProblem, solved: &SolvedFit, free: bool) -> Option<f64> {
     let per = problem.per_point();

@@ -17,7 +17,7 @@ use super::pose::posed;
 use super::prior::Prior;
 use super::problem::{ADHESION, FitProblem, FreeParameter, Paths, Target};
 use super::pulled::is_pulled;
-use super::residuals::{beside, of_part};
+use super::residuals::{beside, of_part, without_outliers};
 use super::rows::Rows;
 use super::scatter::Scatter;
 use super::settled::{
@@ -246,6 +246,7 @@ impl<'a> Posed<'a> {
             abscissa: branches.abscissa,
             correlations: what.correlations.as_ref().map(rows_of),
             chi_squared: real.iter().map(|r| r * r).sum::<f64>() / left,
+            chi_squared_without_outliers: without_outliers(&problem, &solved, &residuals),
             chi_squared_of: [false, true].map(|free| of_part(&problem, &solved, free)),
             degrees,
             priors,

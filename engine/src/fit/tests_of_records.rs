@@ -88,6 +88,8 @@ fn outliers_side_by_side_are_missed_and_single_ones_are_not() {
     };
     let single = with(&|i| i % 20 == 0);
     assert_eq!(single.verdict, Verdict::Describes, "{:?}", single.reasons);
+    let without = single.chi_squared_without_outliers.unwrap();
+    assert!(single.chi_squared > 10.0 && (0.7..1.3).contains(&without), "{} {without}", single.chi_squared);
     let together = with(&|i| (230..242).contains(&i));
     assert_eq!(together.verdict, Verdict::DoesNotDescribe);
     assert!(together.reasons.iter().any(|reason| reason.kind == "missed"), "{:?}", together.reasons);

@@ -47,6 +47,8 @@ pub struct FitReport {
     pub correlations: Option<Vec<Vec<f64>>>,
     /// Σr²/(n − p), r in σ.
     pub chi_squared: f64,
+    /// The same without the rows that are outliers; `None` where there are none.
+    pub chi_squared_without_outliers: Option<f64>,
     /// Σr²/n of the points in contact; `None` if there are none.
     pub chi_squared_in_contact: Option<f64>,
     /// The same for the points apart.
@@ -390,6 +392,7 @@ impl FitReport {
             priors: fit.priors.clone(),
             correlations: fit.correlations.clone(),
             chi_squared: fit.chi_squared,
+            chi_squared_without_outliers: fit.chi_squared_without_outliers,
             chi_squared_in_contact: fit.chi_squared_of[0],
             chi_squared_apart: fit.chi_squared_of[1],
             noise_of_neighbours: fit.scatter.contact,

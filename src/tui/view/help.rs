@@ -218,9 +218,9 @@ fn about(app: &App) -> Vec<HelpLine> {
         entries.extend(FitReport::new(file, fit, None).text().lines().map(line));
     }
     section(&mut entries, theme, &theme.text(&model.preset.title));
-    entries.extend(model.comment.lines().map(line));
+    entries.extend(paragraphs(&model.comment).iter().map(|text| line(text)));
     if model.comment.is_empty() {
-        entries.push(line("its file has no comment before the first key"));
+        entries.push(line("(the file has no description)"));
     }
     let changes = changes(&model.saved, &model.preset);
     if !changes.is_empty() {
@@ -228,6 +228,19 @@ fn about(app: &App) -> Vec<HelpLine> {
         entries.extend(changes.iter().map(|change| line(&greek(change))));
     }
     entries
+}
+
+/// The paragraphs of a comment, each in one line: the screen breaks them anew. Lists and indented lines stay.
+fn paragraphs(comment: &str) -> Vec<String> {
+    let mut all: Vec<String> = Vec::new();
+    for text in comment.lines() {
+        let goes_on = text.starts_with(|c: char| c.is_alphanumeric() || "(\"'`".contains(c));
+        match all.last_mut().filter(|last| goes_on && !last.is_empty()) {
+            Some(last) => *last += &format!(" {text}"),
+            None => all.push(text.to_owned()),
+        }
+    }
+    all
 }
 
 /// The lines of a page in the form in which they are searched.
@@ -257,7 +270,9 @@ fn count(lines: &[Vec<Line<'_>>]) -> usize {
 /// Draws the help over the screen, starting from the first line shown.
 pub fn draw(frame: &mut Frame<'_>, area: Rect, app: &App, help: &Help) {
     let theme = app.theme;
-    let area = area.inner(Margin::new(area.width.saturating_sub(110) / 2, 0));
+    // Beside a narrower help, the footer would be seen in part.
+    let beside = area.width.saturating_sub(110) / 2;
+    let area = Rect { height: area.height.saturating_sub(u16::from(beside > 0)), ..area }.inner(Margin::new(beside, 0));
     let mut block = panel(theme, &title(help), true);
     let inner = block.inner(area);
     let mut lines: Vec<Vec<Line<'_>>> =

@@ -107,8 +107,10 @@ impl FitReport {
         let (chi, fitted) = (short(self.chi_squared, 4), self.rows.fitted());
         let _ = writeln!(
             text,
-            "chi squared per degree of freedom {chi}; {fitted} points, {}",
-            counted(self.outliers, "outlier")
+            "chi squared per degree of freedom {chi}; {fitted} points, {}{}",
+            counted(self.outliers, "outlier"),
+            self.chi_squared_without_outliers
+                .map_or_else(String::new, |chi| format!(", {} without", short(chi, 4)))
         );
         let sigma = |quantity, axis: usize| {
             let told = with_unit(units, quantity, self.sigma[axis], true, |x| short(x, 3));
