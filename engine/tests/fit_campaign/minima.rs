@@ -3,7 +3,7 @@
 //! The curves in `minima/` come from programs that share no code with the engine, with normal noise of the force: `range`
 //! from Maugis' equations at a Tabor number of 1.5, `spring` and `few_rows` from quasi-static loops on waves by
 //! quadrature, `pull`, `slow` and `moving` from the rate equation of an edge, `begins_in_contact` from the equations of Hertz, `hidden`
-//! from those of Johnson, Kendall and Roberts, as all that fit `ball` and `dead_load`, `last_wave`, `either` and `snaps` from the exact
+//! from those of Johnson, Kendall and Roberts, as all that fit `ball` and `dead_load`, `last_wave`, `either`, `named` and `snaps` from the exact
 //! equilibria on waves, `pinned` from a loop with a dead band. The presets begin up to three times off.
 
 use super::kinds::Made;
@@ -147,6 +147,13 @@ fn two_rows_apart_do_not_turn_the_columns() {
 }
 
 /// All of it is tension, where two states have each force, and x begins 5 um off.
+#[test]
+fn a_column_that_names_a_retraction_tells_which_way_it_runs() {
+    let free = &["E*", "gamma", "data.offset"];
+    let (text, preset) = (include_str!("minima/named.csv"), include_str!("minima/named.toml"));
+    is_right(text, preset, free, &[(MODULUS, 1_170_861.7), (ADHESION, 0.050_140_58)]);
+}
+
 #[test]
 fn a_record_of_tension_alone_is_found_from_a_far_offset() {
     is_right(

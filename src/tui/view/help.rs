@@ -272,7 +272,8 @@ pub fn draw(frame: &mut Frame<'_>, area: Rect, app: &App, help: &Help) {
     let theme = app.theme;
     // Beside a narrower help, the footer would be seen in part.
     let beside = area.width.saturating_sub(110) / 2;
-    let area = Rect { height: area.height.saturating_sub(u16::from(beside > 0)), ..area }.inner(Margin::new(beside, 0));
+    let area = Rect { height: area.height.saturating_sub(u16::from(beside > 0)), ..area }
+        .inner(Margin::new(beside, 0));
     let mut block = panel(theme, &title(help), true);
     let inner = block.inner(area);
     let mut lines: Vec<Vec<Line<'_>>> =
