@@ -256,7 +256,10 @@ pub fn heads(line: &str, separator: Separator, dimensions: &[Dimension]) -> Vec<
     let mut open: Option<(char, String)> = None;
     let (has_pairs, mut is_quoted) = (line.matches('"').count() % 2 == 0, false);
     for c in line.chars() {
-        is_quoted ^= c == '"' && has_pairs;
+        // Inches stand behind a number, a quotation mark before a cell.
+        if c == '"' && has_pairs && (is_quoted || at.0.trim().is_empty()) {
+            is_quoted = !is_quoted;
+        }
         match (&mut open, separator) {
             (Some((close, unit)), _) if c == *close => {
                 let unit = unit.trim().to_owned();
@@ -274,9 +277,10 @@ pub fn heads(line: &str, separator: Separator, dimensions: &[Dimension]) -> Vec<
             (None, _) if c == '[' || c == '(' => {
                 open = Some((if c == '[' { ']' } else { ')' }, String::new()));
             }
-            (None, Separator::Character(parting)) if c == parting && !is_quoted => {
-                cells.push(std::mem::take(&mut at));
-            }
+            (None, Separator::Character(parting)) if c == parting => match is_quoted {
+                true => at.0.push(' '),
+                false => cells.push(std::mem::take(&mut at)),
+            },
             (None, Separator::Spaces) if c.is_whitespace() => {
                 if !(at.0.is_empty() && at.1.is_none()) {
                     cells.push(std::mem::take(&mut at));

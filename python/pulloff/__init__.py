@@ -19,7 +19,7 @@ from typing import Any, Dict, Iterable, List, Mapping, NamedTuple, Optional, Seq
 
 from . import _engine
 from ._afm import AfmCurve, read_afm
-from ._arguments import checked, whole
+from ._arguments import checked, items, path, whole
 from ._problem import PresetText, Problem
 from ._progress import Progress, told
 from ._table import Table
@@ -147,6 +147,7 @@ def fit_together(
     FitError, DataError
         The fit gives no result; the points, or what is asked of them, are refused.
     """
+    problems = items("problems", problems, "a sequence of Problem")
     if not all(isinstance(problem, Problem) for problem in problems):
         raise ArgumentError("problems must be a sequence of Problem")
     natives = [problem._native for problem in problems]
@@ -220,7 +221,8 @@ def sweep(
     elif isinstance(spec, str) and "\n" in spec:
         text = spec
     else:
-        folder = os.path.dirname(os.fspath(spec)) or os.curdir
+        spec = path("spec", spec)
+        folder = os.path.dirname(spec) or os.curdir
         try:
             text = _engine.read_file(spec).decode()
         except (DataError, UnicodeDecodeError) as error:
@@ -234,7 +236,9 @@ def sweep(
         raise SpecError(f"row_limit = {row_limit!r} is out of range: it must be a time in seconds above 0")
     wanted = {
         "jobs": jobs,
-        "shard": shard if shard is None or isinstance(shard, str) else "/".join(str(whole("shard", n)) for n in shard),
+        "shard": "/".join(str(whole("shard", n)) for n in items("shard", shard, "(i, n) or 'i/n'"))
+        if not (shard is None or isinstance(shard, str))
+        else shard,
         "row_limit": row_limit,
         "out": out,
         "resume": resume,
@@ -267,9 +271,7 @@ def merge(
     OutputError
         A part is missing, duplicated, unfinished or from another sweep; ``out`` exists and ``overwrite`` is not set.
     """
-    if isinstance(parts, (str, bytes, os.PathLike)):
-        raise TypeError(f"parts = {parts!r} must be a list of files")
-    files = [os.fspath(part) for part in parts]
+    files = [path(f"parts[{at}]", part) for at, part in enumerate(items("parts", parts, "a list of files"))]
     for part in files:
         if os.path.exists(out) and os.path.exists(part) and os.path.samefile(part, out):
             raise OutputError(f"{os.fspath(out)} is also read, as a part: write to another file")

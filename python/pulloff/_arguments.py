@@ -34,16 +34,15 @@ def truth(name: str, value: Any) -> bool:
     return bool(value)
 
 
-def number(name: str, value: Any) -> float:
+def number(name: str, value: Any, wanted: str = "a number") -> float:
     """A real number: no text, no truth value, no array."""
-    wanted = "a number"
     is_complex = isinstance(value, complex) or getattr(getattr(value, "dtype", None), "kind", "") == "c"
     if _is_truth(value) or is_complex or isinstance(value, (str, bytes)) or getattr(value, "shape", ()) != ():
         raise _refused(name, value, wanted)
     try:
         return float(value)
     except OverflowError as error:
-        raise ArgumentError(f"{name} is out of range: it must be {wanted} up to 1e308") from error
+        raise ArgumentError(f"{name} is out of range: it must be at most 1e308") from error
     except (TypeError, ValueError) as error:
         raise _refused(name, value, wanted) from error
 
@@ -97,10 +96,7 @@ def path(name: str, value: Any) -> str:
 
 def control(name: str, value: Any) -> Union[str, float]:
     """What the loading device prescribes."""
-    try:
-        return value if isinstance(value, str) else number(name, value)
-    except ArgumentError as error:
-        raise _refused(name, value, "'displacement', 'force' or a stiffness") from error
+    return value if isinstance(value, str) else number(name, value, "'displacement', 'force' or a stiffness")
 
 
 def mapping(name: str, value: Any) -> Dict[Any, Any]:
@@ -108,6 +104,13 @@ def mapping(name: str, value: Any) -> Dict[Any, Any]:
     if not isinstance(value, Mapping) and not hasattr(value, "keys"):
         raise _refused(name, value, "a dict")
     return {key: os.fspath(item) if isinstance(item, os.PathLike) else item for key, item in dict(value).items()}
+
+
+def items(name: str, value: Any, wanted: str) -> List[Any]:
+    """The items of a sequence."""
+    if isinstance(value, (str, bytes, Mapping)) or not hasattr(value, "__iter__"):
+        raise _refused(name, value, wanted)
+    return list(value)
 
 
 _Check = Callable[[str, Any], Any]

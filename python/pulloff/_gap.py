@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any, Callable, Tuple
 
 from . import _engine
-from .errors import NotCertified, PresetError
+from .errors import ArgumentError, NotCertified, PresetError
 
 if TYPE_CHECKING:
     import numpy as np
@@ -22,7 +22,10 @@ def plain(values: ArrayLike) -> NDArray[np.float64]:
     values become NaN."""
     if np.iscomplexobj(values):
         raise PresetError("complex numbers have no place here: give real ones")
-    return np.require(unmasked(values), np.float64, ["C", "A"])
+    try:
+        return np.require(unmasked(values), np.float64, ["C", "A"])
+    except (TypeError, ValueError) as error:
+        raise ArgumentError(f"{str(values)[:60]!r}: an array of numbers is needed") from error
 
 
 def unmasked(values: Any) -> Any:

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any, Mapping, Optional, Sequence, Tuple, Union
 
 from . import _engine
 from ._afm import AfmCurve
-from ._arguments import path
+from ._arguments import number, path
 from ._gap import unmasked
 from .errors import DataError
 
@@ -67,7 +67,7 @@ def range_of(name: str, given: Optional[Range]) -> Optional[Tuple[float, float]]
         return None
     try:
         lo, hi = given
-        lo, hi = (float("-inf") if lo is None else float(lo)), (float("inf") if hi is None else float(hi))
+        lo, hi = (float("-inf") if lo is None else number(name, lo)), (float("inf") if hi is None else number(name, hi))
     except (TypeError, ValueError) as error:
         raise DataError(f"{name} = {given!r}: a range must be (from, to)") from error
     if not lo < hi:

@@ -6,6 +6,8 @@ import warnings
 from contextlib import contextmanager
 from typing import Callable, Iterator, Optional, Union
 
+from .errors import ArgumentError
+
 Progress = Union[None, bool, Callable[[float], object]]
 """``None``: a bar if tqdm is installed and the work takes longer than a second; ``True`` and ``False``: a bar always or never;
 a function is called with the fraction done, 0 to 1, a few times a second, and stops the computation by raising an exception."""
@@ -20,6 +22,8 @@ def told(progress: Progress, what: str) -> Iterator[Optional[Callable[[float], o
     if callable(progress):
         yield progress
         return
+    if not (progress is None or isinstance(progress, bool)):
+        raise ArgumentError(f"progress = {progress!r}: it must be True, False, None or a function")
     if progress is False:
         yield None
         return

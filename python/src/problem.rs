@@ -74,9 +74,9 @@ fn value(preset: &Preset, key: &str, given: &Bound<'_, PyAny>) -> PyResult<Value
             &format!("{} must be a number or a string, not {}", quote(key), quote(&kind)),
         )
     };
-    // That of numpy has one of two names, by its version.
-    let is_of_numpy = given.get_type().name().is_ok_and(|name| name == "bool_" || name == "bool");
-    if given.is_instance_of::<PyBool>() || is_of_numpy {
+    // Those of numpy would be converted to a number.
+    let kind = given.getattr("dtype").and_then(|dtype| dtype.getattr("kind")?.extract::<String>());
+    if given.is_instance_of::<PyBool>() || kind.is_ok_and(|kind| kind == "b" || kind == "c") {
         return Err(other());
     }
     if given.is_instance_of::<PyString>() {

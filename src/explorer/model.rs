@@ -491,6 +491,28 @@ impl Model {
         self.history.current().filter(|node| self.is_on_curve(node))
     }
 
+    /// Whether a state is a limit point under `control`, whatever it was reached under: the slopes of one are rounding.
+    pub fn is_limit(&self, node: &Node, control: Control) -> bool {
+        /// A limit point is known to the square root of rounding, as a share of its radius.
+        const KNOWN: f64 = 1e-7;
+        let curve = self.curve.as_deref().filter(|curve| is_on_curve(curve, node));
+        let Some(curve) = curve.filter(|_| node.on_path.is_none() && !node.has_rings()) else {
+            return node.is_limit(control);
+        };
+        let s = node.state.contact_radius;
+        let is_here = |radius: f64| (radius - s).abs() <= KNOWN * s;
+        let unit = curve.case.units().length;
+        node.is_limit(control)
+            || control == curve.case.control && curve.limits.iter().any(|at| is_here(at.contact_radius))
+            || curve.other_limits.iter().any(|(of, at)| *of == control && is_here(at.contact_radius / unit))
+    }
+
+    /// Whether the edge runs inward from an unstable state: one in which a walk begins has it run outward, as at the beginning of an
+    /// unloading.
+    pub fn runs_inward(&self, node: &Node) -> bool {
+        self.inward && !(node.begins && matches!(node.kind, NodeKind::Start | NodeKind::Moved))
+    }
+
     /// The number, among the curve's limit points of the control, of the one on which the walker stands.
     pub fn limit_number(&self) -> Option<usize> {
         let node = self.walker()?;

@@ -10,6 +10,7 @@ use pulloff_engine::preset::Preset;
 use pulloff_engine::problem::{Control, Start};
 use pulloff_engine::progress::{Progress, Stopped};
 use pulloff_engine::report::PullReport;
+use pulloff_engine::report::map::EXACT;
 use pulloff_engine::report::number::{short, with_unit};
 use pulloff_engine::report::pull::{AskedPulls, PullError, RunReport, missing};
 use pulloff_engine::units::{Quantity, UnitSystem};
@@ -140,7 +141,8 @@ impl Model {
             Ok(report) => report,
         };
         let known = self.warnings();
-        let warning = report.warnings.iter().find(|warning| !known.contains(warning));
+        // That the equation is exact is no news that the numbers should wait for.
+        let warning = report.warnings.iter().find(|warning| !known.contains(warning) && **warning != EXACT);
         let events = self.path().map_or(&[][..], |path| &path.events);
         let jumps = events.iter().filter(|event| matches!(event.kind, "snap" | "last-contact")).count();
         let said = pull.sentence(jumps)?;

@@ -141,6 +141,7 @@ fn keeps_control(model: &Model, node: &Node, control: Control) -> bool {
 /// Where the walker stands and what a step or the next event does, if nothing else is to be said.
 fn standing(model: &Model, node: &Node, control: Control) -> String {
     let way = if model.inward { "inward" } else { "outward" };
+    let runs = if model.runs_inward(node) { "inward" } else { "outward" };
     let held = control_word(control);
     let kept = match control {
         _ if !keeps_control(model, node, control) => "where the walk begins".to_owned(),
@@ -190,13 +191,13 @@ fn standing(model: &Model, node: &Node, control: Control) -> String {
             format!("Stable under {held} control. {step} steps {way}, {next} to the next event")
         }
         (false, NodeKind::Start | NodeKind::Moved) => {
-            format!("This start is unstable under {held} control: {next} lets the edge run outward")
+            format!("This state is unstable under {held} control: {next} lets the edge run {runs}")
         }
         (false, NodeKind::Solved) => {
-            format!("Solved again {kept}, unstable: {next} lets the edge run")
+            format!("Solved again {kept}, unstable: {next} lets the edge run {runs}")
         }
         (false, _) => {
-            format!("Off the path, unstable under {held} control: {next} lets the edge run")
+            format!("Off the path, unstable under {held} control: {next} lets the edge run {runs}")
         }
     }
 }

@@ -4,7 +4,7 @@
 //! loading and unloading stand side by side and nothing covers anything.
 
 use super::bounds::Bounds;
-use super::loops::NO_LOOP;
+use super::loops::{NO_LOOP, number_as_path};
 use super::parts::{Area, Axis, Figure, Line, Mark, Meaning, Role, Sign};
 use super::scale::Scale;
 use super::subject::Subject;
@@ -15,7 +15,11 @@ use pulloff_engine::report::path::{EventReport, PathReport, PathStateReport, Sta
 pub fn figure(subject: &Subject<'_>) -> Figure {
     let scale = subject.scale();
     match subject.cycle {
-        Some(report) => contact_map(report, scale),
+        Some(report) => {
+            let mut figure = contact_map(report, scale);
+            number_as_path(subject, &mut figure);
+            figure
+        }
         None => Figure { missing: Some(NO_LOOP.to_owned()), ..blank(subject.curve.setting.control, scale) },
     }
 }

@@ -32,17 +32,19 @@ pub fn figure(subject: &Subject<'_>) -> Figure {
     match subject.cycle {
         Some(report) => {
             let mut figure = cycle_figure(report, &subject.curve.points, scale);
-            // The numbers on the screen are those of the path, and this is another one.
-            if subject.preset.path.begin == Begin::Disc {
-                for mark in &mut figure.marks {
-                    if let Sign::LastContact(number) = &mut mark.sign {
-                        *number = 0;
-                    }
-                }
-            }
+            number_as_path(subject, &mut figure);
             figure
         }
         None => Figure { missing: Some(NO_LOOP.to_owned()), ..blank(scale) },
+    }
+}
+
+/// The numbers on the screen are those of the path: a loop beside an unloading has none.
+pub fn number_as_path(subject: &Subject<'_>, figure: &mut Figure) {
+    for mark in figure.marks.iter_mut().filter(|_| subject.preset.path.begin == Begin::Disc) {
+        if let Sign::LastContact(number) = &mut mark.sign {
+            *number = 0;
+        }
     }
 }
 

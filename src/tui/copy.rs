@@ -65,18 +65,18 @@ fn state(model: &Model) -> String {
     let name = format!("{}\n", model.source.shown());
     match model.history.current() {
         Some(node) if node.is_apart() => format!("{name}the bodies are apart\n"),
-        Some(node) => name + &quantities(node),
+        Some(node) => name + &quantities(model, node),
         None => name,
     }
 }
 
-fn quantities(node: &Node) -> String {
+fn quantities(model: &Model, node: &Node) -> String {
     let setting = &node.setting;
     let state = node.state.in_units(setting.units());
     let shown =
         |quantity, x| with_unit(&node.setting.preset.units, quantity, x, false, |x| significant(x, DIGITS));
     let pure = |x| significant(x, DIGITS);
-    let word = |control| match (node.is_limit(control), node.stability.under(control)) {
+    let word = |control| match (model.is_limit(node, control), node.stability.under(control)) {
         (true, _) => "limit point",
         (false, true) => "stable",
         (false, false) => "unstable",

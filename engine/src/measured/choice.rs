@@ -241,7 +241,9 @@ fn refusal(
 ) -> CurveReadError {
     let is_signal =
         ["V", "mV", "uV", "µV", "nA", "A", "pA", "Volt", "Volts", "volt", "volts"].contains(&unit.trim());
-    if is_signal {
+    // Nobody measures where a device is in amperes: that is ångström.
+    let is_current = unit.trim() == "A" && ![ColumnRole::Force, ColumnRole::Deflection].contains(&role);
+    if is_signal && !is_current {
         let (number, name, unit) = (at + 1, quote(name), quote(unit));
         CurveReadError::Signal { line, number, name, unit, role }
     } else {

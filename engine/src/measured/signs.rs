@@ -52,12 +52,13 @@ impl UnsignedPoints<'_> {
         let known = by_radii(points).or(named.filter(|_| is_timed));
         let end = match self.free {
             FreePart::Found => {
-                if let Some(found) = by_jumps(points, self.segments, known, named) {
+                if let Some(found) = by_jumps(points, self.segments, known) {
+                    let or = found.or.or_else(|| self.as_named(points, named, found.turned));
                     turn(points, found.turned);
                     let [x, force] = found.turned;
                     notes.extend(x.then(|| self.turned_x()));
                     notes.extend(force.then(|| PULLED.to_owned()));
-                    return found;
+                    return Orientation { or, ..found };
                 }
                 match known {
                     Some(is_turned) => [!is_turned, is_turned],
@@ -91,6 +92,16 @@ impl UnsignedPoints<'_> {
             notes.push(self.turned_x());
         }
         Orientation { unless_apart: other, ..self.of_force(points, turned, notes) }
+    }
+
+    /// The signs by which a column `named` the branches, where the jump that speaks for others, `found`, does not lead to a level
+    /// force: a snap between waves is one in both directions, if x and P are reversed together.
+    fn as_named(&self, points: &[MeasuredPoint], named: Option<bool>, found: Turned) -> Option<Turned> {
+        let mut points = points.to_vec();
+        turn(&mut points, found);
+        let (x, force): (Vec<f64>, Vec<f64>) = points.iter().map(|point| (point.x, point.force)).unzip();
+        let is_level = free_end(&x, &force)[0];
+        (named == Some(!found[0]) && !is_level).then(|| found.map(|is_turned| !is_turned))
     }
 
     /// Whether the sign of x is reversed, by the branches that a column names; `None` where they disagree, or x stands still.
@@ -180,13 +191,11 @@ fn end_of(x: &[f64], span: ValueRange) -> [bool; 2] {
 }
 
 /// The signs for which the force jumps up from the contact to rows apart, and rises with x where the bodies are pressed
-/// together most; only those with the sign of x that is `known`, if it is. Against the sign by which a column names
-/// the branches, `named`, only a jump to a level force counts: on waves, a snap read backwards may be as large as the last one.
+/// together most; only those with the sign of x that is `known`, if it is.
 fn by_jumps(
     points: &[MeasuredPoint],
     segments: Option<&[Segment]>,
     known: Option<bool>,
-    named: Option<bool>,
 ) -> Option<Orientation> {
     let pieces = match segments {
         None => one_way(points),
@@ -207,8 +216,7 @@ fn by_jumps(
             let found = jump(&x, &force)
                 .filter(|jump| jump.at >= if force.len() < FEW { FEWEST } else { IN_CONTACT })
                 .filter(|jump| rises(&x[..jump.at], &force[..jump.at]) == Some(true))
-                .filter(|jump| may_rest || !rests(&middle(&x[jump.at..]), &x))
-                .filter(|_| named != Some(!turned[0]) || free_end(&x, &force)[0]);
+                .filter(|jump| may_rest || !rests(&middle(&x[jump.at..]), &x));
             sum += found.map_or(0.0, |jump| jump.deviations);
         }
         sum
@@ -278,8 +286,7 @@ pub(super) fn is_swapped(points: &[MeasuredPoint]) -> bool {
     const ROWS: usize = 20;
     const STILL: f64 = 0.015;
     const GOES_ON: f64 = 0.02;
-    /// So many standard deviations of a row, over the root of the rows of a half, may be noise, or are none.
-    const POSSIBLE: f64 = 4.0;
+    /// So many standard deviations of a row, over the root of the rows of a half.
     const CERTAIN: f64 = 8.0;
     /// In stiff contact the force changes by more of its range than x does, but not by so many times as much.
     const STEEPER: f64 = 4.0;
@@ -296,10 +303,10 @@ pub(super) fn is_swapped(points: &[MeasuredPoint]) -> bool {
     let rows: Vec<f64> = (0..x.len()).map(|row| row as f64).collect();
     let [still, goes_on] = [&x, &force].map(|of| {
         let noise = scatter_over(&rows, of).unwrap_or(0.0) / range(of.iter().copied());
-        noise / ((count / 2) as f64).sqrt()
+        CERTAIN * noise / ((count / 2) as f64).sqrt()
     });
     // After a long jump, what x changes by in contact is a small share of its range, but it is more than noise.
-    let (still, goes_on) = ((POSSIBLE * still).clamp(NONE, STILL), (CERTAIN * goes_on).max(GOES_ON));
+    let (still, goes_on) = (still.clamp(NONE, STILL), goes_on.max(GOES_ON));
     [0..count, x.len() - count..x.len()].into_iter().any(|rows| {
         let [of_x, of_force] = [&x, &force].map(|of| share(of, rows.clone()));
         of_x < still && of_force > goes_on.max(STEEPER * of_x)

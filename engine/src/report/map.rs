@@ -138,7 +138,7 @@ pub struct MapReport {
 }
 
 /// The note for a preset with the basis of rings.
-pub(super) const EXACT: &str =
+pub const EXACT: &str =
     "all numbers follow from the exact equation of one disc, whatever the basis of the preset";
 
 /// Why there is no map.

@@ -29,7 +29,7 @@ pub fn closest_key<'a>(key: &str, known: impl IntoIterator<Item = (&'a str, &'a 
     if key.len() > LONGEST {
         return None;
     }
-    let lower = key.to_lowercase();
+    let lower = key.to_lowercase().replace('-', "_");
     let synonym = SYNONYMS.iter().find(|(name, _)| *name == last(&lower));
     let lower = synonym.map_or(lower, |(_, of)| (*of).to_owned());
     best(known.into_iter().map(|(k, label)| {

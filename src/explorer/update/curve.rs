@@ -9,7 +9,6 @@ use crate::explorer::node::{Node, NodeKind};
 use crate::explorer::status_line::of_before;
 use crate::explorer::walk::Action;
 use crate::mend::WordedFault;
-use pulloff_engine::quasistatic::Limit;
 use std::sync::Arc;
 
 /// The curve on the screen stays; the one being computed is no longer wanted.
@@ -88,15 +87,10 @@ pub(super) fn curve_came(
     }
 }
 
-/// Whether a state of one disc that was reached under another control is a limit point of the present one.
+/// Whether a state that was reached under another control is a limit point of the present one.
 fn becomes_limit(model: &Model, node: &Node) -> bool {
-    /// A limit point is known to the square root of rounding, as a share of its radius.
-    const KNOWN: f64 = 1e-7;
-    let Some(curve) = &model.curve else { return false };
-    let s = node.state.contact_radius;
-    let is_here = |limit: &Limit| (limit.contact_radius - s).abs() <= KNOWN * s;
-    let is_free = node.on_path.is_none() && !node.has_rings() && node.control != curve.case.control;
-    is_free && curve.limits.iter().any(is_here)
+    let control = model.control().filter(|control| *control != node.control);
+    control.is_some_and(|control| model.is_limit(node, control))
 }
 
 /// Solves the walker's state for the values of the curve, if it does not lie on it, or if another control makes it a limit point.

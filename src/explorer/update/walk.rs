@@ -51,14 +51,13 @@ pub(in crate::explorer) fn walk(model: &mut Model, action: Action) -> Vec<Effect
     if curve.along.is_some() && matches!(action, Action::Steps(_)) && model.can_jump() {
         return model.refuse(format!("the path goes on after the jump: {} lets it happen", Id::Jump.named()));
     }
-    let begins = node.is_some_and(|node| node.begins && !node.is_limit(control));
+    let runs_inward = node.is_none_or(|node| model.runs_inward(node));
     let id = model.number();
     let wanted = if let Action::Steps(count) = action { Some(count) } else { None };
     let solves = matches!(action, Action::Solve { .. });
     model.walking =
         Some(Walking { id, made: 0, wanted, solves, instead_of: None, paced: false, stops: false });
-    // From an unstable start, the edge runs outward, as at the beginning of an unloading.
-    let inward = model.inward && !(begins && action == Action::Jump);
+    let inward = if action == Action::Jump { runs_inward } else { model.inward };
     let length = model.length;
     model.journal.walks(action.clone(), Arc::clone(&curve), model.inward, length);
     vec![Effect::Walk(Box::new(Request {

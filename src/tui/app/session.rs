@@ -27,7 +27,7 @@ impl App {
 
     pub(super) fn offer_key(&mut self, offer: ResumeOffer, key: KeyEvent) -> Vec<Effect> {
         match key.code {
-            KeyCode::Enter | KeyCode::Char('y') => {
+            KeyCode::Enter => {
                 let (model, effects) = offer.snapshot.resume(Some(&self.model));
                 self.model = model;
                 effects

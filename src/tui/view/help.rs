@@ -34,7 +34,7 @@ const READING: &[&str] = &[
     "Inadmissible states have the colour of a warning, or ! without colours: outside the disc the next crest would \
      touch. The log lists them after the events; +13 !7 in its corner counts the events and such parts out of sight. \
      The real path has rings of contact there: its loop is drawn too, loading and unloading in colours of their own; with path.begin = apart the walk follows it.",
-    "\u{1}go\u{1} and a letter leads to one of four places, \u{1}next-view\u{1} through the charts there. \
+    "\u{1}go\u{1} and a letter lead to one of four places, \u{1}next-view\u{1} through the charts there. \
      In the potential m and M are its stable and unstable states, B the barrier before the edge lets go; ^ marks the \
      crests.",
     "What was walked is bright; a jump and what branches off are broken lines. Without colours, letters along the lines \
@@ -84,7 +84,7 @@ const SHORT: &[(&str, &str)] = &[
     ("touch", "a crest outside the disc meets the other body: a ring of contact begins"),
     (
         "spring",
-        "soft ones snap earlier; none is stiffer than DISPLACEMENT: what snaps there snaps with all of them, alone or within a larger jump",
+        "soft ones snap earlier; displacement control is the stiffest limit: what snaps there snaps with every spring, alone or within a larger jump",
     ),
     ("1.1 × smooth", "of a pull at a rate: over the largest pull of the smooth sphere at the same rate"),
     (
@@ -96,7 +96,10 @@ const SHORT: &[(&str, &str)] = &[
         "lost 3e-4",
         "energy lost in jumps, the first touch and the last contact included; with a + after it, plus that of a jump without bound",
     ),
-    ("dead band", "what the area that closed costs more when it opens: the rest of what a loop loses"),
+    (
+        "dead band",
+        "the extra energy that opening costs over closing: the part of a loop's loss that is not in jumps",
+    ),
     ("no bound", "a dead load keeps falling: the loss at the last contact has no limit"),
     ("by area agrees", "the same loss as the area between the curve and the way of the device"),
     ("admissible", "whether the bodies stay apart outside the contact"),
@@ -230,15 +233,19 @@ fn about(app: &App) -> Vec<HelpLine> {
     entries
 }
 
-/// The paragraphs of a comment, each in one line: the screen breaks them anew. Lists and indented lines stay.
+/// The paragraphs of a comment, each in one line: the screen breaks them anew. A line that was full goes on in the next one, if
+/// that begins with a word; lists, formulas and short lines stay.
 fn paragraphs(comment: &str) -> Vec<String> {
+    const FULL: usize = 60;
     let mut all: Vec<String> = Vec::new();
+    let mut was_full = false;
     for text in comment.lines() {
-        let goes_on = text.starts_with(|c: char| c.is_alphanumeric() || "(\"'`".contains(c));
-        match all.last_mut().filter(|last| goes_on && !last.is_empty()) {
+        let goes_on = was_full && text.starts_with(char::is_alphabetic) && !text.contains(" = ");
+        match all.last_mut().filter(|_| goes_on) {
             Some(last) => *last += &format!(" {text}"),
             None => all.push(text.to_owned()),
         }
+        was_full = text.chars().count() >= FULL && !text.contains(" = ");
     }
     all
 }

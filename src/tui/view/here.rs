@@ -67,48 +67,49 @@ pub fn line(app: &App, room: usize) -> Line<'static> {
     let scale = Scale::of(curve, model.axes);
     let [length, force, radius] = scale.state_axes();
     let state = shown_state(node);
-    let mut parts: Vec<Vec<Span<'static>>> = Vec::new();
+    // Each part with its rank: those of the highest ranks go where there is no room.
+    let mut parts: Vec<(u8, Vec<Span<'static>>)> = Vec::new();
     let shown = |axis: &Axis, x: f64, digits| {
         pair(theme, &format!("{} ", axis.symbol), &significant(x, digits)).to_vec()
     };
-    parts.push(vec![Span::styled(format!("@ {}", node.step), theme.strong())]);
+    parts.push((0, vec![Span::styled(format!("@ {}", node.step), theme.strong())]));
     if matches!(node.kind, NodeKind::Stale(_)) || !model.is_on_curve(node) {
-        parts.push(vec![Span::styled("for other values", theme.error())]);
+        parts.push((1, vec![Span::styled("for other values", theme.error())]));
     }
     if let Some(event) = node.parted_by() {
-        parts.push(vec![Span::styled(format!("apart, {event}"), theme.strong())]);
+        parts.push((1, vec![Span::styled(format!("apart, {event}"), theme.strong())]));
     }
-    parts.push(shown(&length, scale.length(state.approach), 4));
-    parts.push(shown(&force, scale.force(state.force), 4));
-    parts.push(shown(&radius, scale.radius(state.contact_radius), 3));
+    parts.push((4, shown(&length, scale.length(state.approach), 4)));
+    parts.push((3, shown(&force, scale.force(state.force), 4)));
+    parts.push((5, shown(&radius, scale.radius(state.contact_radius), 3)));
     if !node.is_apart() {
         let fault = inadmissible(theme, node).map(|line| line.to_string().trim().to_owned());
-        parts.extend(fault.map(|fault| vec![Span::styled(fault, theme.error())]));
-        let flags = stable(model, node).into_iter().flat_map(|[name, word]| {
+        parts.extend(fault.map(|fault| (1, vec![Span::styled(fault, theme.error())])));
+        let mut flags = Vec::new();
+        for [name, word] in stable(model, node) {
             let (word, is_bad) = match word {
                 "yes" => ("stable", false),
                 "no" => ("unstable", true),
                 word => (word, true),
             };
-            let word = if is_bad { Span::styled(word, theme.error()) } else { Span::raw(word) };
-            [Span::styled(theme.text(&format!("{name} ")), theme.dim()), word, Span::raw(" ")]
-        });
-        parts.push(flags.collect());
-        let way = if model.inward { "inward" } else { "outward" };
-        parts.push(pair(theme, "step ", &format!("{} {way}", short(model.length, 3))).to_vec());
-    }
-    let mut spans = vec![Span::raw(" ")];
-    let mut used = 1;
-    for part in parts {
-        let width: usize = part.iter().map(Span::width).sum();
-        // A part that ends in a space needs one column less.
-        let ends = spans.last().is_some_and(|span| span.content.ends_with(' '));
-        let between = if used > 1 { 2 - usize::from(ends) } else { 0 };
-        if used + between + width > room {
-            break;
+            let between = if flags.is_empty() { "" } else { " " };
+            flags.push(Span::styled(theme.text(&format!("{between}{name} ")), theme.dim()));
+            flags.push(if is_bad { Span::styled(word, theme.error()) } else { Span::raw(word) });
         }
-        used += between + width;
-        spans.push(Span::raw(" ".repeat(between)));
+        parts.push((2, flags));
+        let way = if model.inward { "inward" } else { "outward" };
+        parts.push((6, vec![Span::raw(way)]));
+        parts.push((7, pair(theme, "step ", &short(model.length, 3)).to_vec()));
+    }
+    let width = |part: &(u8, Vec<Span<'_>>)| 2 + part.1.iter().map(Span::width).sum::<usize>();
+    // The first has one space before it, the others two.
+    while parts.iter().map(width).sum::<usize>() > room + 1 {
+        let Some(last) = parts.iter().map(|(rank, _)| *rank).max().filter(|rank| *rank > 0) else { break };
+        parts.retain(|(rank, _)| *rank != last);
+    }
+    let mut spans = Vec::new();
+    for (_, part) in parts {
+        spans.push(Span::raw(if spans.is_empty() { " " } else { "  " }));
         spans.extend(part);
     }
     Line::from(spans)
@@ -119,7 +120,7 @@ fn stable(model: &Model, node: &Node) -> Vec<[&'static str; 2]> {
     let spring = model.control().filter(|control| matches!(control, Control::Stiffness(_)));
     let word = |control| {
         let word = match node.stability.under(control) {
-            _ if node.is_limit(control) => "LIMIT",
+            _ if model.is_limit(node, control) => "LIMIT",
             true => "yes",
             false => "no",
         };

@@ -73,10 +73,7 @@ impl Sheet {
                     // A curve may be gone from beside a preset that is good without it.
                     let value = value.map_err(|invalid| match (invalid, place) {
                         (Invalid::Made { key, cause }, LayerOrigin::File(_)) if row.kind == Kind::Points => {
-                            Invalid::Made {
-                                key,
-                                cause: format!("{cause}; --set data.file=none leaves it out"),
-                            }
+                            Invalid::Made { key, cause: format!("{cause}; data.file = none does without it") }
                         }
                         (invalid, _) => invalid,
                     });
