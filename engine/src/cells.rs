@@ -254,7 +254,7 @@ pub fn heads(line: &str, separator: Separator, dimensions: &[Dimension]) -> Vec<
     let mut cells: Vec<ColumnHead> = Vec::new();
     let mut at: ColumnHead = Default::default();
     let mut open: Option<(char, String)> = None;
-    let (has_pairs, mut is_quoted) = (line.matches('"').count() % 2 == 0, false);
+    let (has_pairs, mut is_quoted) = (line.matches('"').count().is_multiple_of(2), false);
     for c in line.chars() {
         // Inches stand behind a number, a quotation mark before a cell.
         if c == '"' && has_pairs && (is_quoted || at.0.trim().is_empty()) {
@@ -277,10 +277,8 @@ pub fn heads(line: &str, separator: Separator, dimensions: &[Dimension]) -> Vec<
             (None, _) if c == '[' || c == '(' => {
                 open = Some((if c == '[' { ']' } else { ')' }, String::new()));
             }
-            (None, Separator::Character(parting)) if c == parting => match is_quoted {
-                true => at.0.push(' '),
-                false => cells.push(std::mem::take(&mut at)),
-            },
+            (None, Separator::Character(parting)) if c == parting && is_quoted => at.0.push(' '),
+            (None, Separator::Character(parting)) if c == parting => cells.push(std::mem::take(&mut at)),
             (None, Separator::Spaces) if c.is_whitespace() => {
                 if !(at.0.is_empty() && at.1.is_none()) {
                     cells.push(std::mem::take(&mut at));

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any, Callable, Tuple
 
 from . import _engine
-from .errors import ArgumentError, NotCertified, PresetError
+from .errors import NotCertified, PresetError
 
 if TYPE_CHECKING:
     import numpy as np
@@ -25,7 +25,7 @@ def plain(values: ArrayLike) -> NDArray[np.float64]:
     try:
         return np.require(unmasked(values), np.float64, ["C", "A"])
     except (TypeError, ValueError) as error:
-        raise ArgumentError(f"{str(values)[:60]!r}: an array of numbers is needed") from error
+        raise PresetError(f"{str(values)[:60]!r} is not an array of numbers") from error
 
 
 def unmasked(values: Any) -> Any:

@@ -91,9 +91,10 @@ fn value(preset: &Preset, key: &str, given: &Bound<'_, PyAny>) -> PyResult<Value
         return Ok(Value::Integer(n));
     }
     let number = given.extract::<f64>().map(Value::Number);
-    number.map_err(|error| match error.is_instance_of::<PyOverflowError>(py) {
-        true => errors::of_type(py, key, &format!("{} is out of range: it must be at most 1e30", quote(key))),
-        false => other(),
+    number.map_err(|error| {
+        let is_large = error.is_instance_of::<PyOverflowError>(py);
+        let text = format!("{} is out of range: it must be at most 1e30", quote(key));
+        if is_large { errors::of_type(py, key, &text) } else { other() }
     })
 }
 

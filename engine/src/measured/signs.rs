@@ -53,7 +53,7 @@ impl UnsignedPoints<'_> {
         let end = match self.free {
             FreePart::Found => {
                 if let Some(found) = by_jumps(points, self.segments, known) {
-                    let or = found.or.or_else(|| self.as_named(points, named, found.turned));
+                    let or = found.or.or_else(|| as_named(points, named, found.turned));
                     turn(points, found.turned);
                     let [x, force] = found.turned;
                     notes.extend(x.then(|| self.turned_x()));
@@ -94,16 +94,6 @@ impl UnsignedPoints<'_> {
         Orientation { unless_apart: other, ..self.of_force(points, turned, notes) }
     }
 
-    /// The signs by which a column `named` the branches, where the jump that speaks for others, `found`, does not lead to a level
-    /// force: a snap between waves is one in both directions, if x and P are reversed together.
-    fn as_named(&self, points: &[MeasuredPoint], named: Option<bool>, found: Turned) -> Option<Turned> {
-        let mut points = points.to_vec();
-        turn(&mut points, found);
-        let (x, force): (Vec<f64>, Vec<f64>) = points.iter().map(|point| (point.x, point.force)).unzip();
-        let is_level = free_end(&x, &force)[0];
-        (named == Some(!found[0]) && !is_level).then(|| found.map(|is_turned| !is_turned))
-    }
-
     /// Whether the sign of x is reversed, by the branches that a column names; `None` where they disagree, or x stands still.
     /// Without times, the file may have been written backwards.
     fn by_segments(&self, points: &[MeasuredPoint]) -> Option<bool> {
@@ -140,6 +130,16 @@ impl UnsignedPoints<'_> {
         let is_doubtful = may_fall || pulls.is_some_and(|pulls| rises.is_some_and(|rises| rises != pulls));
         Orientation { turned: [x, turned], or: is_doubtful.then_some([x, !turned]), unless_apart: None }
     }
+}
+
+/// The signs by which a column `named` the branches, where the jump that speaks for others, `found`, does not lead to a level
+/// force: a snap between waves is one in both directions, if x and P are reversed together.
+fn as_named(points: &[MeasuredPoint], named: Option<bool>, found: Turned) -> Option<Turned> {
+    let mut points = points.to_vec();
+    turn(&mut points, found);
+    let (x, force): (Vec<f64>, Vec<f64>) = points.iter().map(|point| (point.x, point.force)).unzip();
+    let is_level = free_end(&x, &force)[0];
+    (named == Some(!found[0]) && !is_level).then(|| found.map(|is_turned| !is_turned))
 }
 
 /// By how much the last third of some values lies above the first, by their medians; `None` of too few.

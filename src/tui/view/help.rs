@@ -242,7 +242,7 @@ fn paragraphs(comment: &str) -> Vec<String> {
     for text in comment.lines() {
         let goes_on = was_full && text.starts_with(char::is_alphabetic) && !text.contains(" = ");
         match all.last_mut().filter(|_| goes_on) {
-            Some(last) => *last += &format!(" {text}"),
+            Some(last) => last.extend([" ", text]),
             None => all.push(text.to_owned()),
         }
         was_full = text.chars().count() >= FULL && !text.contains(" = ");
