@@ -50,6 +50,20 @@ fn the_largest_pull_is_a_limit_point_once_the_force_is_controlled() {
 }
 
 #[test]
+fn an_edge_runs_the_way_that_the_screen_shows() {
+    // At an event one can arrive by `n` or by its number; the other control is unstable there.
+    let landing = |keys: &str| {
+        let mut screen = Screen::new("wavy-sphere");
+        screen.keys(&format!("{keys}:control force\r"));
+        assert!(screen.text(80, 24).contains("lets the edge run inward"), "{}", screen.text(80, 24));
+        screen.keys("n");
+        screen.app.model.history.current().unwrap().state.contact_radius
+    };
+    let (walked, led) = (landing("n"), landing("1"));
+    assert!((walked / led - 1.0).abs() < 1e-9 && walked < 0.37, "{walked} {led}");
+}
+
+#[test]
 fn what_is_wrong_is_said_with_its_column_and_stays_to_be_mended() {
     let mut screen = Screen::new("wavy-sphere");
     screen.keys(":step 3 x\r");
