@@ -176,7 +176,7 @@ class Problem:
                 raise PresetError(f"r has {radii.size} values and h has {gaps.size}: the numbers must be equal", key="gap.file")
         text = "\n".join(
             [
-                f"units = {json.dumps(str(units))}",
+                f"units = {json.dumps(units)}",
                 "[material]",
                 f"effective_modulus = {effective_modulus!r}",
                 f"work_of_adhesion = {work_of_adhesion!r}",
@@ -187,7 +187,7 @@ class Problem:
                 f"start_contact_radius = {start_contact_radius!r}",
             ]
         )
-        native = _engine.Problem.of_rows(text, radii, gaps, str(units) == "SI")
+        native = _engine.Problem.of_rows(text, radii, gaps, units == "SI")
         return cls._of(native.replace(changes) if changes else native, "from_gap", native)
 
     @checked
@@ -219,7 +219,6 @@ class Problem:
         OutputError
             One of them exists and must not be overwritten, or cannot be written; then nothing is replaced.
         """
-        path = os.fspath(path)
         if os.path.isdir(path):
             raise OutputError(f"{path} is a folder: path must name a file")
         stem = os.path.basename(path)

@@ -41,7 +41,10 @@ pub fn figure(subject: &Subject<'_>) -> Figure {
 
 /// The numbers on the screen are those of the path: a loop beside an unloading has none.
 pub fn number_as_path(subject: &Subject<'_>, figure: &mut Figure) {
-    for mark in figure.marks.iter_mut().filter(|_| subject.preset.path.begin == Begin::Disc) {
+    if subject.preset.path.begin == Begin::Apart {
+        return;
+    }
+    for mark in &mut figure.marks {
         if let Sign::LastContact(number) = &mut mark.sign {
             *number = 0;
         }

@@ -53,6 +53,7 @@ impl UnsignedPoints<'_> {
         let end = match self.free {
             FreePart::Found => {
                 if let Some(found) = by_jumps(points, self.segments, known) {
+                    let named = named.filter(|_| known.is_none());
                     let or = found.or.or_else(|| as_named(points, named, found.turned));
                     turn(points, found.turned);
                     let [x, force] = found.turned;

@@ -152,9 +152,7 @@ fn lines(theme: Theme, model: &Model, path: &PathReport, room: usize) -> Vec<Lin
     let energy = |lost| with_unit(&model.preset.units, Quantity::Energy, lost, theme.ascii, loss);
     let fall = if totals.dissipated.is_none() { "+" } else { "" };
     let lost = format!("{}{fall}", energy(lost));
-    let [opening, closing] = snaps(path);
-    let counted = if closing == 0 { opening.to_string() } else { format!("{opening} + {closing} in") };
-    let count = head(" ", pair(theme, "snaps ", &counted));
+    let count = head(" ", pair(theme, "snaps ", &snaps(path, " in")));
     match totals.dead_band {
         // The count of snaps goes where there is no room for it.
         Some(band) => lines.extend([
@@ -167,9 +165,11 @@ fn lines(theme: Theme, model: &Model, path: &PathReport, room: usize) -> Vec<Lin
     lines
 }
 
-/// How many snaps a path has: those of an edge that opens, and those of one that closes.
-fn snaps(path: &PathReport) -> [usize; 2] {
-    ["snap", "snap-in"].map(|kind| path.events.iter().filter(|event| event.kind == kind).count())
+/// How many snaps a path has: those of an edge that opens and, if there are any, those of one that closes, with a word behind them.
+fn snaps(path: &PathReport, word: &str) -> String {
+    let [opening, closing] =
+        ["snap", "snap-in"].map(|kind| path.events.iter().filter(|event| event.kind == kind).count());
+    if closing == 0 { opening.to_string() } else { format!("{opening}+{closing}{word}") }
 }
 
 /// The width of a name.
@@ -222,10 +222,8 @@ fn beside(theme: Theme, model: &Model, pin: &Pin, compared: &Compared<'_>) -> Ve
     let bands = totals.map(|totals| totals.dead_band.map(|band| energy(band.dissipated)));
     // The panel has no line more than without one.
     if bands == [None, None] {
-        let [now, pin] = [path, other].map(|path| {
-            let [opening, closing] = snaps(path);
-            if closing == 0 { opening.to_string() } else { format!("{opening}+{closing}") }
-        });
+        // The word has no room in a column.
+        let [now, pin] = [path, other].map(|path| snaps(path, ""));
         lines.push(head(" snaps".to_owned(), &now, &pin, ""));
     } else {
         lines.push(row("band", bands));

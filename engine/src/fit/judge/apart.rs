@@ -124,12 +124,12 @@ pub(super) fn of_ends(problem: &FitProblem, solved: &SolvedFit) -> Option<String
     numbers.sort_unstable();
     let what = match &numbers[..] {
         [row] => format!(
-            "row {row}, where the contact or the part apart begins or ends, lies {most} sigma off the model and hardly counts"
+            "row {row}, where the contact or the free part begins or ends, lies {most} sigma off the model and hardly counts"
         ),
         rows => {
             let rows: Vec<String> = rows.iter().map(ToString::to_string).collect();
             format!(
-                "rows {}, where the contact or the part apart begins or ends, lie up to {most} sigma off the model and hardly count",
+                "rows {}, where the contact or the free part begins or ends, lie up to {most} sigma off the model and hardly count",
                 rows.join(", ")
             )
         }

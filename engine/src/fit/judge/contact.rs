@@ -343,7 +343,7 @@ fn of_runs(Evidence { problem, solved, .. }: Evidence) -> Vec<Reason> {
         let name = rows.first().map_or("", |row| problem.data[row.index].segment.name());
         let fewer = if found.is_finite() {
             format!(
-                "keep their sign over long runs (their number is {} standard deviations below that of noise)",
+                "keep their sign over long runs (the number of runs is {} standard deviations below that of noise)",
                 short(-found, 2)
             )
         } else {

@@ -349,10 +349,18 @@ fn a_letter_in_brackets_is_no_other_quantity() {
     let file = |unit: &str| format!("approach [{unit}],force [nN]\n{}", two(",", 1.0, 1.0));
     for unit in ["A", "a", "S"] {
         let refused = parse(file(unit).as_bytes(), &ColumnSpec::default()).unwrap_err().to_string();
-        assert!(refused.contains(unit), "{refused}");
+        assert!(refused.contains(&format!("the unit \"{unit}\"")), "{refused}");
     }
     assert_eq!(
         parse(file("angstrom").as_bytes(), &ColumnSpec::default()).unwrap().columns[0].role,
         ColumnRole::Approach
     );
+}
+
+#[test]
+fn marks_of_inches_are_no_quotation_marks() {
+    let text = format!("approach 5\" tip [nm],force 3\" [nN]\n{}", two(",", 1.0, 1.0));
+    let names: Vec<String> = columns(text.as_bytes()).unwrap().into_iter().map(|seen| seen.name).collect();
+    assert_eq!(names.len(), 2, "{names:?}");
+    assert!(names[0].contains("tip") && names[1].contains("force"), "{names:?}");
 }
