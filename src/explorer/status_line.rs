@@ -111,7 +111,8 @@ fn next(model: &Model) -> String {
         return format!("computing the curve for the new values{waiting}{}", progress(model));
     }
     let Some(control) = model.control() else { return String::new() };
-    if let Some(said) = happened(model, node) {
+    // A landing under the control before says nothing of the present one.
+    if let Some(said) = happened(model, node).filter(|_| node.control == control || node.is_apart()) {
         return said;
     }
     if node.is_limit(control) {

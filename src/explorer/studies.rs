@@ -83,6 +83,8 @@ pub struct StudyData {
     pub slow: Option<SlowPulls>,
     /// `P_c` at each value; NaN where there is none.
     critical: Vec<f64>,
+    /// At how many values the gap is too steep for the theory, and its largest slope; `None` if it is nowhere.
+    pub steep: Option<(usize, f64)>,
 }
 
 /// The range of a study as typed, KEY=FROM..TO or KEY=log:FROM..TO.
@@ -229,14 +231,13 @@ impl StudyWish {
         preset
     }
 
-    /// `P_c` at each value, the same on all surfaces; NaN where there is none.
-    fn critical_forces(&self) -> Vec<f64> {
-        let at = |value: &Value| {
+    /// What the preset with each value, on its own surface, says of itself; `None` where it does not take the value.
+    fn at_each(&self, of: impl Fn(&Preset) -> Option<f64>) -> impl Iterator<Item = Option<f64>> {
+        self.values.iter().map(move |value| {
             let mut preset = self.preset.clone();
             preset.set(&self.key, value.clone()).ok()?;
-            critical_force(&preset)
-        };
-        self.values.iter().map(|value| at(value).unwrap_or(f64::NAN)).collect()
+            of(&preset)
+        })
     }
 
     /// The outcome for the value at `index` on the surface of this number; `None` if `progress` asked to stop.
@@ -271,8 +272,12 @@ impl StudyWish {
         let is_law = self.key == RATE && self.column.quantity.name == PEAK_FORCE;
         let slow = if is_law { SlowPulls::of(&self.preset, progress).ok().flatten() } else { None };
         let others = vec![Vec::new(); count];
-        let mut data =
-            StudyData { wish: self.clone(), outcomes, others, slow, critical: self.critical_forces() };
+        let critical = self.at_each(critical_force).map(|force| force.unwrap_or(f64::NAN)).collect();
+        let steep = self.at_each(Preset::steep_slope).flatten().fold(None, |known, slope| {
+            let (count, steepest) = known.unwrap_or((0, slope));
+            Some((count + 1, slope.max(steepest)))
+        });
+        let mut data = StudyData { wish: self.clone(), outcomes, others, slow, critical, steep };
         let all = count * (1 + self.others());
         let next = AtomicUsize::new(0);
         let (send, done) = channel();
@@ -518,6 +523,14 @@ mod tests {
             let number = pulloff_engine::report::number::significant(ratio, 5);
             assert!(said.ends_with(&format!("{number} Pc")), "{said}");
         }
+        // Slopes of the waves, 2πA/λ, are told where they are not small.
+        let told = |data: &StudyData| {
+            let notes = study::of(data, &preset, Axes::Reduced).notes;
+            notes.into_iter().find(|note| note.contains("not small beside 1"))
+        };
+        assert_eq!(told(&data), None);
+        let steep = told(&of("gap.amplitude", 0.003)).unwrap();
+        assert!(steep.starts_with("slopes up to 1.") && steep.ends_with("at 1 of 4"), "{steep}");
         // One P_c for all values.
         let data = of("gap.amplitude", 0.0025);
         assert_eq!(study::of(&data, &preset, Axes::Reduced).y.title(), "largest pull (P/Pc)");

@@ -137,6 +137,10 @@ fn notes(data: &StudyData, without: usize) -> impl Iterator<Item = String> {
             .is_blind_to(&data.wish.key)
             .then(|| "the same at any speed: see peak_force".to_owned()),
         is_unchecked.then(|| "one disc, not checked".to_owned()),
+        data.steep.map(|(at, slope)| {
+            let slope = significant(slope, 2);
+            format!("slopes up to {slope}, not small beside 1, at {at} of {count}")
+        }),
         (missing > 0).then(|| format!("{missing} without a value: the cross-hair says why")),
     ];
     all.into_iter().flatten()

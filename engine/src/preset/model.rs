@@ -166,6 +166,14 @@ impl Preset {
         self.material.range_of_action.or(usual)
     }
 
+    /// The largest slope of the gap within the disc that the path starts from, if it is not small beside 1.
+    pub fn steep_slope(&self) -> Option<f64> {
+        match self.path.start {
+            Start::ContactRadius(start) => self.gap.steep_slope(start),
+            _ => None,
+        }
+    }
+
     /// The tension and the range of the adhesion, if it has a range.
     pub fn cohesion(&self) -> Option<Cohesion> {
         self.material.adhesion.cohesion(self.material.work_of_adhesion, self.range_of_action())

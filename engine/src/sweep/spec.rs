@@ -11,7 +11,7 @@ use crate::gap::shapes::split_mix::SplitMix64;
 use crate::preset::called::key_called;
 use crate::preset::schema::CHOOSERS;
 use crate::preset::{Preset, Value};
-use crate::problem::{Begin, Start};
+use crate::problem::Begin;
 use crate::progress::Progress;
 use crate::text::{closest, quote};
 use crate::units::number::short;
@@ -195,11 +195,7 @@ impl Spec {
         let mut warnings = Vec::new();
         let rows = self.looked_at();
         let count = rows.len() as u64;
-        let slope = |row| {
-            let preset = self.problem(row).ok()?;
-            let Start::ContactRadius(start) = preset.path.start else { return None };
-            Some((row, preset.gap.steep_slope(start)?))
-        };
+        let slope = |row| Some((row, self.problem(row).ok()?.steep_slope()?));
         let steep: Vec<(u64, f64)> = rows.into_iter().filter_map(slope).collect();
         if let Some((row, slope)) = steep.iter().max_by(|a, b| a.1.total_cmp(&b.1)) {
             let values = self.axes.iter().zip(self.values(*row));

@@ -6,7 +6,7 @@ use crate::explorer::script::offers::{DEVICES, Typing};
 use crate::explorer::script::parse;
 use crate::explorer::table::{CommandRow, row_of};
 use crate::explorer::{Command, Effect, Id, ScreenPanel, nudge, reach};
-use crate::tui::overlay::{Choice, Choose, Dialog, Item, Prompt};
+use crate::tui::overlay::{Choice, Choose, Dialog, Item, Prompt, Purpose};
 use crossterm::event::{KeyCode, KeyEvent, KeyModifiers};
 use pulloff_engine::preset::schema::Kind;
 use pulloff_engine::preset::{Row, Value};
@@ -29,6 +29,24 @@ fn turned(key: KeyEvent, id: Option<Id>, line: usize, count: usize) -> Option<us
         (_, Some(Id::Down)) => (line + 1).min(last),
         _ => return None,
     })
+}
+
+/// The prompt in which a text typed into a list goes on: `stiffness=` in that of the line that begins so, a path in that
+/// of files.
+fn goes_on(choose: &Choose, typed: char) -> Option<Prompt> {
+    let (line, begun) = match typed {
+        '=' => {
+            let (_, line) = choose.current()?;
+            (line, line.text.split_whitespace().next().unwrap_or_default())
+        }
+        '/' | '.' => {
+            let is_of_files = |item: &&Item| matches!(&item.action, Choice::Prompt(prompt) if prompt.purpose == Purpose::Path);
+            (choose.items.iter().find(is_of_files)?, &*choose.filter)
+        }
+        _ => return None,
+    };
+    let Choice::Prompt(prompt) = &line.action else { return None };
+    Some(Prompt { input: format!("{begun}{typed}").into(), fresh: false, ..(**prompt).clone() })
 }
 
 impl App {
@@ -61,13 +79,8 @@ impl App {
                 }
             }
             KeyCode::Char(c) if is_text => {
-                // `stiffness=` goes on in the prompt of the line that begins so.
-                if let (Some((_, item)), '=') = (choose.current(), c)
-                    && let Choice::Prompt(prompt) = &item.action
-                {
-                    let word = item.text.split_whitespace().next().unwrap_or_default();
-                    let input = format!("{word}=").into();
-                    return self.lay(Dialog::Prompt(Prompt { input, fresh: false, ..(**prompt).clone() }));
+                if let Some(prompt) = goes_on(&choose, c) {
+                    return self.lay(Dialog::Prompt(prompt));
                 }
                 if choose.filter.chars().count() < FILTER {
                     choose.filter.push(c);

@@ -29,11 +29,13 @@ fn meaning(role: ColumnRole) -> &'static str {
     }
 }
 
-/// Whether a column can have this role: one with a unit of another quantity cannot.
+/// Whether a column can have this role: one with a unit of another quantity cannot, nor one of words unless it names
+/// the branch.
 fn may_be(seen: &SeenColumn, role: ColumnRole) -> bool {
+    let is_number = |cell: &String| cell.is_empty() || cell.contains(|letter: char| letter.is_ascii_digit());
     match &seen.unit {
         Some(unit) => Unit::parse(unit, 0).is_ok_and(|unit| role.dimension() == Some(unit.dimension())),
-        None => true,
+        None => role == ColumnRole::Segment || seen.first.iter().any(is_number),
     }
 }
 

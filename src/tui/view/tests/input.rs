@@ -37,8 +37,8 @@ fn the_footer_shows_only_what_can_be_done() {
 fn the_columns_of_a_foreign_file_are_chosen_from_lists() {
     let mut screen = Screen::new("lens");
     let path = screen.folder.path().join("foreign.csv");
-    let rows: Vec<String> = (0..40).map(|i| format!("7,{i},{}", i * i)).collect();
-    std::fs::write(&path, format!("u1,u2,u3\n{}\n", rows.join("\n"))).unwrap();
+    let rows: Vec<String> = (0..40).map(|i| format!("7,{i},{},out", i * i)).collect();
+    std::fs::write(&path, format!("u1,u2,u3,u4\n{}\n", rows.join("\n"))).unwrap();
     screen.keys(&format!(":data {}\r", path.display()));
     let text = screen.text(100, 30);
     assert!(text.contains("What is x") && text.contains("approach   column 2 \"u2\": 0, 1, 2"), "{text}");
@@ -48,6 +48,7 @@ fn the_columns_of_a_foreign_file_are_chosen_from_lists() {
     screen.keys("um\r");
     let text = screen.text(100, 30);
     assert!(text.contains("What is the force") && !text.contains("column 2"), "{text}");
+    assert!(!text.contains("column 4"), "words are no force: {text}");
     screen.keys("force      column 3\rnN\r");
     assert!(screen.text(100, 30).contains("Does a column name the branch"), "{}", screen.text(100, 30));
     screen.keys("\r");

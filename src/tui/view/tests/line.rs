@@ -59,6 +59,12 @@ fn an_edge_runs_the_way_that_the_screen_shows() {
         screen.keys("n");
         screen.app.model.history.current().unwrap().state.contact_radius
     };
+    // A landing is one of its own control.
+    let mut screen = Screen::new("wavy-sphere");
+    screen.keys("nn");
+    assert!(screen.text(80, 24).contains("Landed"), "{}", screen.text(80, 24));
+    screen.keys(":control force\r");
+    assert!(!screen.text(80, 24).contains("Landed"), "{}", screen.text(80, 24));
     let (walked, led) = (landing("n"), landing("1"));
     assert!((walked / led - 1.0).abs() < 1e-9 && walked < 0.37, "{walked} {led}");
 }
@@ -272,6 +278,12 @@ fn text_typed_in_a_list_keeps_the_lines_that_have_it() {
     screen.press(KeyCode::End);
     let Some(Dialog::Choose(choose)) = &screen.app.overlay else { unreachable!() };
     assert_eq!(choose.selected, choose.items.len() - 1);
+    // A path goes on in the prompt of files.
+    let path = screen.folder.path().join("own.toml");
+    let text = crate::store::shipped::find("cone").unwrap().text;
+    std::fs::write(&path, text.replace("Adhesive cone", "My cone")).unwrap();
+    screen.keys(&format!("{}\r", path.display()));
+    assert!(screen.app.model.preset.title.starts_with("My cone"), "{}", screen.text(80, 24));
     screen.keys("\x1b");
     screen.press(KeyCode::End);
     assert_eq!(screen.app.model.parameter, screen.app.model.knobs().len() - 1);
