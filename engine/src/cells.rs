@@ -302,12 +302,39 @@ pub fn heads(line: &str, separator: Separator, dimensions: &[Dimension]) -> Vec<
 /// A name with its unit after a slash or a space, if the unit's dimension is one of `dimensions`: `r / um`,
 /// `height nm`.
 ///
-/// Any other word there may mean anything: `r/R` is a ratio.
+/// Any other word there may mean anything: `r/R` is a ratio. A multiple of a unit is left whole, for no reader to take as
+/// the unit itself.
 fn unbracketed(text: &str, dimensions: &[Dimension]) -> ColumnHead {
     let is_unit = |unit: &str| Unit::parse(unit, 0).is_ok_and(|unit| dimensions.contains(&unit.dimension()));
     let parted = text.rsplit_once('/').or_else(|| text.rsplit_once(char::is_whitespace));
     match parted.map(|(name, unit)| (name.trim(), unit.trim())) {
-        Some((name, unit)) if !name.is_empty() && is_unit(unit) => (name.to_owned(), Some(unit.to_owned())),
+        Some((name, unit)) if !name.is_empty() && is_unit(unit) => {
+            match name.rsplit_once(char::is_whitespace) {
+                Some((name, factor)) if is_power_of_ten(factor) => {
+                    (name.trim().to_owned(), Some(format!("{factor} {unit}")))
+                }
+                _ => (name.to_owned(), Some(unit.to_owned())),
+            }
+        }
+        Some((name, unit)) if !name.is_empty() && is_multiple(unit, is_unit) => {
+            (name.to_owned(), Some(unit.to_owned()))
+        }
         _ => (text.to_owned(), None),
     }
+}
+
+/// Whether a word is a power of ten, as a factor before a unit; smaller numbers count channels.
+fn is_power_of_ten(word: &str) -> bool {
+    let number = word.trim_start_matches(['x', '×', '*', '·']);
+    let is_begun = number.starts_with("10") || number.starts_with("0.");
+    number.contains('^')
+        || is_begun && number.matches('1').count() == 1 && number.chars().all(|c| "01.".contains(c))
+}
+
+/// Whether text is a multiple of a unit, such as `10 mN`, `10^-3 N` or `N/1000`, or the factor of one.
+pub fn is_multiple(text: &str, is_unit: impl Fn(&str) -> bool) -> bool {
+    let is_of_factor = |c: char| c.is_ascii_digit() || " .^+-*·×/()".contains(c);
+    let rest = text.trim_matches(is_of_factor);
+    let has_factor = text.len() > rest.len() && text.contains(|c: char| c.is_ascii_digit());
+    has_factor && if rest.is_empty() { text.contains(['^', '*', '×']) } else { is_unit(rest) }
 }

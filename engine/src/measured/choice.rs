@@ -281,7 +281,7 @@ fn of_header(
         let is_better = column.rank < *rank;
         let (taken, left) = if is_better { (new.at, known.at) } else { (known.at, new.at) };
         notes.push(format!(
-            "columns {} and {} are both a {}: the {} is read, the other left out",
+            "columns {} and {} both hold the {}: the {} is read, the other left out",
             taken.min(left) + 1,
             taken.max(left) + 1,
             new.role.word(),

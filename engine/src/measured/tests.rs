@@ -100,7 +100,7 @@ fn a_tab_file_states_its_spring_and_its_segments() {
     let measured = parse(text.as_bytes(), &ColumnSpec::default()).unwrap();
     let spring = measured.stiffness.map(|stated| stated.value);
     assert_eq!(spring, Some(0.043));
-    assert!(measured.notes[0].contains("columns 2 and 3 are both a position: the first is read"));
+    assert!(measured.notes[0].contains("columns 2 and 3 both hold the position: the first is read"));
     let points = measured.points(&si(), spring).unwrap();
     assert_eq!(points.abscissa, Abscissa::Position);
     let branches = points.branches(&Asked::default()).unwrap();

@@ -358,6 +358,32 @@ fn a_letter_in_brackets_is_no_other_quantity() {
 }
 
 #[test]
+fn a_multiple_of_a_unit_is_not_the_unit() {
+    let file = |header: &str| format!("{header}\n{}", two(";", 1.0, 1.0));
+    for header in [
+        "depth [um];Force [10 mN]",
+        "depth [um];Force [10^-3 N]",
+        "depth [um];Force [N*10^-3]",
+        "depth [um];Force [N/1000]",
+        "depth [um];Force [N (10^-3)]",
+        "depth [um];Force (10^-3) N",
+        "depth [um];Force [N] 10^-3",
+        "depth [um];Force/10^-3 N",
+        "depth [um];Force 10 mN",
+        "depth [0.1 um];Force [mN]",
+        "depth [2 um];Force [mN]",
+    ] {
+        let said = refused(file(header).as_bytes());
+        assert!(said.contains("line 1: the unit") && said.contains("is not a unit of"), "{header}: {said}");
+    }
+    // Numbers of channels and exponents are none.
+    for header in ["depth 2 [um];Force (Ch 1) [mN]", "depth [um];Force 1 [mN]", "depth/um;Force 2 mN"] {
+        let measured = parse(file(header).as_bytes(), &ColumnSpec::default());
+        assert!(measured.is_ok_and(|measured| measured.used.iter().all(|used| used.has_unit)), "{header}");
+    }
+}
+
+#[test]
 fn marks_of_inches_are_no_quotation_marks() {
     let text = format!("approach 5\" tip [nm],force 3\" [nN]\n{}", two(",", 1.0, 1.0));
     let names: Vec<String> = columns(text.as_bytes()).unwrap().into_iter().map(|seen| seen.name).collect();
