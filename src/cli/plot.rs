@@ -24,6 +24,7 @@ use crate::sweep::SweepResults;
 use crate::sweep::record::{ROW, statistic};
 use clap::{Args, ValueEnum};
 use pulloff_engine::case::Case;
+use pulloff_engine::fit::doubt_of_wave;
 use pulloff_engine::preset::{Preset, data};
 use pulloff_engine::progress::Unwatched;
 use pulloff_engine::quasistatic::jump::EdgeDirection;
@@ -254,6 +255,7 @@ impl PlotArguments {
         }
         console.warn(branches.swapped().as_slice());
         console.warn(branches.doubt().as_slice());
+        console.warn(doubt_of_wave(preset, &branches).as_slice());
         Ok(())
     }
 

@@ -27,6 +27,9 @@ const CLEAR: f64 = 20.0;
 /// More rows than this are apart: on no wave does the force stay the same for so long.
 const FEW_APART: usize = 20;
 
+/// Rows whose force is off the zero of the instrument by no more than this share of the largest pull are at that zero.
+const AT_ZERO: f64 = 0.02;
+
 /// Fits the free keys of `preset` to its own measured curve, as [`fit`] does.
 ///
 /// ```
@@ -150,14 +153,41 @@ pub fn fit(
     Ok(found)
 }
 
+/// How many rows of `branches` look apart, where they may as well be in contact on the last wave.
+fn may_be_on_a_wave(preset: &Preset, branches: &Branches) -> Option<usize> {
+    let is_open = preset.gap.feature_length().is_some() && preset.data.free_part.is_empty();
+    let apart: usize = branches.list.iter().map(|branch| branch.free.len()).sum();
+    (is_open && (1..=FEW_APART).contains(&apart)).then_some(apart)
+}
+
+/// A sentence on rows of the curve of `preset` that look apart, where they may as well be in contact on the last wave.
+pub fn doubt_of_wave(preset: &Preset, branches: &Branches) -> Option<String> {
+    let apart = may_be_on_a_wave(preset, branches)?;
+    let level = branches.baseline?;
+    let zero = preset.data.baseline.unwrap_or(0.0) * if branches.turned[1] { -1.0 } else { 1.0 };
+    let is_at_zero = (level - zero).abs() < AT_ZERO * (level - least_force(branches));
+    // Radii show it, too.
+    let is_seen = branches.list.iter().flat_map(|branch| &branch.free).any(|point| point.radius == 0.0);
+    (!is_at_zero && !is_seen).then(|| {
+        format!(
+            "{} taken to be apart, at zero force, may be in contact on the last wave: a fit tries both, and \
+             data.free_part = none says that they are",
+            counted(apart, "row")
+        )
+    })
+}
+
+/// The least force of the rows in contact.
+fn least_force(branches: &Branches) -> f64 {
+    let attached = branches.list.iter().flat_map(|branch| &branch.attached);
+    attached.map(|point| point.force).fold(f64::INFINITY, f64::min)
+}
+
 /// `preset` with all rows of its curve in contact, where few look apart on waves and its own fit finds that they are not.
 pub(super) fn with_contact(preset: &Preset, options: &Options, progress: &dyn Progress) -> Preset {
     let alone = || {
-        preset.gap.feature_length()?;
-        let branches = branches_of(preset, options).ok()?;
-        let apart: usize = branches.list.iter().map(|branch| branch.free.len()).sum();
-        let found = || fit_own(preset, &options.without_intervals(), progress).ok();
-        let found = (1..=FEW_APART).contains(&apart).then(found).flatten()?;
+        may_be_on_a_wave(preset, &branches_of(preset, options).ok()?)?;
+        let found = fit_own(preset, &options.without_intervals(), progress).ok()?;
         let free_part = &found.preset.data.free_part;
         if found.verdict != Verdict::Describes || *free_part == preset.data.free_part {
             return None;
@@ -178,8 +208,6 @@ fn of_all_in_contact(
     (options, own): (&Options, &mut Result<Fit, FitError>),
     progress: &dyn Progress,
 ) -> Option<Fit> {
-    /// Rows whose force is off the zero of the instrument by no more than this share of the largest pull are at that zero.
-    const AT_ZERO: f64 = 0.02;
     /// By how much χ² is smaller where that tells one from the other.
     const TELLS: f64 = 6.0;
     /// A fit that describes its points with a larger χ² per degree of freedom leaves much of them to outliers.
@@ -198,8 +226,7 @@ fn of_all_in_contact(
     let apart: usize = branches.list.iter().map(|branch| branch.free.len()).sum();
     // More rows than a wave has, or rows at the zero of the force, are apart. A tare is no measure: it is a share of the largest
     // force, which may be a preload.
-    let least = branches.list.iter().flat_map(|branch| &branch.attached).map(|point| point.force);
-    let least = least.fold(f64::INFINITY, f64::min);
+    let least = least_force(&branches);
     let is_apart = |own: &Fit| {
         let off = own.instrument.baseline - preset.data.baseline.unwrap_or(0.0);
         // The points have the signs of the model.

@@ -88,7 +88,7 @@ pub mod uncertain;
 pub mod verdict;
 pub mod way;
 
-pub use directed::{fit, fit_own};
+pub use directed::{doubt_of_wave, fit, fit_own};
 pub use fitted::Fitted;
 pub use models::{AdhesionModel, Models, fit_models};
 pub use options::{FitError, Options};

@@ -172,6 +172,11 @@ impl<'a> Posed<'a> {
         if preset.data.uncertain.is_empty() {
             solved = of_tare(&mut problem, solved, options.robust, (&mut notes, progress));
         }
+        // The other minima, too, by the rows and the noise of the last fit.
+        alike.retain(|u| u.len() == solved.minimum.parameters.len());
+        if !alike.is_empty() {
+            (solved, alike) = nearest(&problem, solved, &alike, options.robust, progress);
+        }
         notes.extend(of_no_free_part(&problem, &branches));
         Ok(Self { preset, branches, options, problem, starts, solved, alike, notes, approached })
     }

@@ -222,13 +222,17 @@ fn same_free_force(list: &mut [OrderedBranch], noise: &Noise, notes: &mut Vec<St
     /// Levels are equal within this many of their errors, or within this share of the range of the branch.
     const SAME: f64 = 6.0;
     const SHARE: f64 = 0.1;
-    let level = |branch: &MeasuredBranch| median(branch.free.iter().map(|point| point.force).collect());
+    let middle =
+        |branch: &MeasuredBranch, of: fn(&MeasuredPoint) -> f64| median(branch.free.iter().map(of).collect());
+    let level = |branch: &MeasuredBranch| middle(branch, |point| point.force);
     let most = list.iter().map(|(branch, _)| branch).max_by_key(|branch| branch.free.len());
-    let Some((most, at)) = most.and_then(|most| Some((most.free.len(), level(most)?))) else { return };
+    let Some((rows, at)) = most.and_then(|most| Some((&most.free, level(most)?))) else { return };
+    let (most, line) = (rows.len(), FreeLine::of(rows));
     for (branch, _) in list {
-        let Some(found) = level(branch) else { continue };
+        let Some((found, x)) = level(branch).zip(middle(branch, |point| point.x)) else { continue };
         let error = noise.sigma[1] * (1.0 / most as f64 + 1.0 / branch.free.len() as f64).sqrt();
-        let off = (found - at).abs();
+        // On a tilted baseline the levels differ, and lie on one line.
+        let off = (found - at).abs().min((found - line.at(x)).abs());
         let whole = range(branch.attached.iter().map(|point| point.force));
         if off > SAME * error && off > SHARE * whole && 2 * branch.free.len() < most {
             notes.push(format!(

@@ -143,6 +143,20 @@ fn as_named(points: &[MeasuredPoint], named: Option<bool>, found: Turned) -> Opt
     (named == Some(!found[0]) && !is_level).then(|| found.map(|is_turned| !is_turned))
 }
 
+/// Whether the force of the rows in `contact` falls, or rises by less than it jumps up to that of the rows behind: read
+/// backwards, the force of a whole contact rises by more, and the jump is one between waves.
+fn comes_off((contact, behind): (&[f64], &[f64])) -> bool {
+    let quarter = contact.len() / 4;
+    // The last rows may be apart already.
+    let parts = [&contact[..quarter], &contact[2 * quarter..3 * quarter], &contact[3 * quarter..], behind];
+    match parts.map(|part| median(part.to_vec())) {
+        [Some(first), Some(third), Some(last), Some(behind)] => {
+            third <= first || last - first <= behind - last
+        }
+        _ => true,
+    }
+}
+
 /// By how much the last third of some values lies above the first, by their medians; `None` of too few.
 fn gained(values: impl Iterator<Item = f64>) -> Option<f64> {
     let values: Vec<f64> = values.collect();
@@ -191,8 +205,8 @@ fn end_of(x: &[f64], span: ValueRange) -> [bool; 2] {
     [within < rest, within > rest]
 }
 
-/// The signs for which the force jumps up from the contact to rows apart, and rises with x where the bodies are pressed
-/// together most; only those with the sign of x that is `known`, if it is.
+/// The signs for which the force jumps up from the contact to rows apart, rises with x where the bodies are pressed
+/// together most, and does not rise by more on the way from there to the jump; only those with the sign of x that is `known`, if it is.
 fn by_jumps(
     points: &[MeasuredPoint],
     segments: Option<&[Segment]>,
@@ -217,6 +231,7 @@ fn by_jumps(
             let found = jump(&x, &force)
                 .filter(|jump| jump.at >= if force.len() < FEW { FEWEST } else { IN_CONTACT })
                 .filter(|jump| rises(&x[..jump.at], &force[..jump.at]) == Some(true))
+                .filter(|jump| comes_off(force.split_at(jump.at)))
                 .filter(|jump| may_rest || !rests(&middle(&x[jump.at..]), &x));
             sum += found.map_or(0.0, |jump| jump.deviations);
         }

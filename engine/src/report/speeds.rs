@@ -23,6 +23,7 @@ use super::columns::columns;
 use super::problem::Head;
 use super::rows::{ReportTable, RowsError};
 use crate::case::{Case, CaseError};
+use crate::fit::doubt_of_wave;
 use crate::measured::branches::MeasuredPoint;
 use crate::measured::points::Turned;
 use crate::measured::{Abscissa, Branches, Instrument};
@@ -146,6 +147,7 @@ impl SpeedsReport {
         let largest = rows.iter().map(|row| row.contact_radius).fold(0.0, f64::max);
         let mut warnings = case.warnings_of_problem(largest / case.units().length);
         warnings.extend(branches.swapped().into_iter().chain(branches.doubt()).chain(doubt));
+        warnings.extend(doubt_of_wave(preset, &branches));
         warnings.extend(doubt_of_baseline(&reading, preset, &branches));
         warnings.extend(doubts_of_rows(of_file.len() - rows.len() - hidden, ambiguous, hidden, contrary));
         if rows.iter().all(|row| row.speed.is_none()) {

@@ -3,7 +3,7 @@
 use super::campaign::{all, asked, wanted};
 use super::kinds::{Kind, Made, any_retraction};
 use super::trial::{made, options, preset};
-use pulloff_engine::fit::{Options, fit};
+use pulloff_engine::fit::{Options, doubt_of_wave, fit};
 use pulloff_engine::measured::{Asked, Points};
 use pulloff_engine::progress::Unwatched;
 use std::ops::Range;
@@ -67,6 +67,24 @@ fn directions(numbers: &Range<u64>) -> Vec<String> {
 fn columns_that_run_the_other_way_are_turned_or_in_doubt() {
     let failures = directions(&asked(0..10));
     assert!(failures.is_empty(), "{failures:#?}");
+}
+
+/// A retraction in contact from the first row to the last: read backwards, each snap looks like the jump to rows apart.
+#[test]
+fn a_contact_that_snaps_is_not_read_backwards() {
+    let made = Made {
+        text: include_str!("minima/whole.csv").to_owned(),
+        preset: include_str!("minima/snaps.toml").to_owned(),
+        free: Vec::new(),
+        truth: Vec::new(),
+    };
+    let preset = preset(&made);
+    let points = preset.data.source.as_ref().unwrap().points(&preset.reading()).unwrap();
+    let branches = points.branches(&Asked::default()).unwrap();
+    assert_eq!(branches.turned, [false, false], "{:?}", branches.notes);
+    let apart: usize = branches.list.iter().map(|branch| branch.free.len()).sum();
+    let said = doubt_of_wave(&preset, &branches).unwrap();
+    assert!(said.starts_with(&format!("{apart} rows taken to be apart")) && apart < 20, "{said}");
 }
 
 #[test]

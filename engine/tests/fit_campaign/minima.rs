@@ -4,7 +4,7 @@
 //! from Maugis' equations at a Tabor number of 1.5, `spring` and `few_rows` from quasi-static loops on waves by
 //! quadrature, `pull`, `slow` and `moving` from the rate equation of an edge, `begins_in_contact` from the equations of Hertz, `hidden`
 //! from those of Johnson, Kendall and Roberts, as all that fit `ball` and `dead_load`, `last_wave`, `either`, `named` and `snaps` from the exact
-//! equilibria on waves, `pinned` from a loop with a dead band. The presets begin up to three times off.
+//! equilibria on waves, `pinned` from a loop with a dead band, `rival` and `tilt` from the equations of Johnson, Kendall and Roberts. The presets begin up to three times off.
 
 use super::kinds::Made;
 use super::trial::{Outcome, fitted, options, outcome};
@@ -23,6 +23,7 @@ fn is_right(text: &str, preset: &str, free: &[&'static str], truth: &[(&'static 
 
 const MODULUS: &str = "material.effective_modulus";
 const ADHESION: &str = "material.work_of_adhesion";
+const CLOSING: &str = "material.closing_work_of_adhesion";
 
 #[test]
 fn a_range_whose_touch_lies_among_rows_apart_is_not_taken() {
@@ -152,6 +153,20 @@ fn a_column_that_names_a_retraction_tells_which_way_it_runs() {
     let free = &["E*", "gamma", "data.offset"];
     let (text, preset) = (include_str!("minima/named.csv"), include_str!("minima/named.toml"));
     is_right(text, preset, free, &[(MODULUS, 1_170_861.7), (ADHESION, 0.050_140_58)]);
+}
+
+#[test]
+fn a_minimum_that_the_last_fit_leaves_behind_is_no_other_reading() {
+    let [text, preset] = [include_str!("minima/rival.csv"), include_str!("minima/rival.toml")];
+    let free = &["E*", "gamma", "data.offset", CLOSING];
+    is_right(text, preset, free, &[(MODULUS, 319_900.0), (ADHESION, 2.185), (CLOSING, 1.172)]);
+}
+
+#[test]
+fn rows_apart_on_a_tilted_baseline_have_different_forces() {
+    let [text, preset] = [include_str!("minima/tilt.csv"), include_str!("minima/tilt.toml")];
+    let free = &["E*", "gamma", "data.offset", "data.tilt"];
+    is_right(text, preset, free, &[(MODULUS, 111_100.0), (ADHESION, 0.000_593)]);
 }
 
 #[test]

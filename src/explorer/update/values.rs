@@ -9,6 +9,7 @@ use crate::explorer::nudge::{Amount, nudge};
 use crate::explorer::pins::{labelled, labelled_with};
 use crate::explorer::requests::{change, file, read, stop};
 use crate::explorer::script::key_called;
+use pulloff_engine::fit::doubt_of_wave;
 use pulloff_engine::gap::shapes::ProfileRows;
 use pulloff_engine::gap::{Gap, Shape};
 use pulloff_engine::preset::edge;
@@ -408,6 +409,7 @@ fn tell_points(model: &mut Model, preset: &Preset) {
             let of_file = preset.notes_of_reading().unwrap_or_default();
             let notes = of_file.into_iter().chain(branches.notes.iter().cloned());
             let doubts = branches.swapped().into_iter().chain(branches.doubt());
+            let doubts = doubts.chain(doubt_of_wave(preset, &branches));
             let said: Vec<String> =
                 doubts.chain([read]).chain(preset.dropped_of(&model.preset)).chain(notes).collect();
             model.tell(Level::Info, said.join("; "));
