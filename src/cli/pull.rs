@@ -72,6 +72,11 @@ pub fn run(arguments: &PullArguments) -> Result<ExitCode, Failure> {
             (PullRows::Runs, false) => COLUMNS,
         };
         console.note(columns::units(columns, preset.path.control, &preset.units).as_deref());
+        if !report.runs.is_empty() && !report.failures.is_empty() {
+            console.note(Some(
+                "the times to failure under --hold-force are not in this table: leave --rate out",
+            ));
+        }
     }
     let rows = || if arguments.rows == PullRows::Moments { report.moments() } else { report.table() };
     sink.write(match format {

@@ -90,7 +90,7 @@ fn values_that_belong_together_are_laid_down_together() {
     let fault = spec.problem(1).unwrap_err();
     assert_eq!(
         fault.to_string(),
-        "refused value: gap.wavelength belongs to wavy-sphere, and the gap is a cone"
+        "refused value: gap.wavelength belongs to gap.shape = wavy-sphere, and the gap is a cone"
     );
 }
 
@@ -160,7 +160,7 @@ fn each_mistake_names_its_line_and_what_is_allowed() {
         ),
         (
             &axis("key = 'gap.slope'\nvalues = [1]"),
-            "s.toml:3: gap.slope belongs to cone, and the gap is a wavy-sphere",
+            "s.toml:3: gap.slope belongs to gap.shape = cone, and the gap is a wavy-sphere",
         ),
         (
             &axis("key = 'gap.amplitude'"),

@@ -219,7 +219,7 @@ mod tests {
         assert_eq!(
             lines,
             [
-                "gap.amplitude belongs to wavy-sphere, and the gap is a sphere",
+                "gap.amplitude belongs to gap.shape = wavy-sphere, and the gap is a sphere",
                 "path.start_force and path.start_approach both set where the path starts: give exactly one",
                 "gap.radius_of_curvature is missing: it must be a number from 1e-30 to 1e30",
                 "the table [material] is missing: it needs effective_modulus, work_of_adhesion",

@@ -44,7 +44,7 @@ impl GivenValues<'_> {
                     self.faults.push(Invalid::NoUnits { key: row.key.clone() });
                     continue;
                 }
-                let belongs = words.join(" or ");
+                let belongs = format!("{chooser} = {}", words.join(" or "));
                 let (what, chosen) = match (chooser, &*word) {
                     ("gap.shape", "harmonics" | "random-waves") => ("gap", format!("one of {word}")),
                     ("gap.shape", "exact-sphere") => ("gap", format!("an {word}")),

@@ -85,7 +85,7 @@ pub fn changed(key: &str) -> &'static [&'static str] {
 pub fn changes(preset: &Preset, row: &Parameter, x: f64) -> Result<Vec<(Key, Value)>, Invalid> {
     let none = || {
         let belongs = match row.applies {
-            Applies::With { words, .. } => words.join(" or "),
+            Applies::With { key, words } => format!("{key} = {}", words.join(" or ")),
             Applies::Always | Applies::Spring => "gaps with a radius of curvature".to_owned(),
         };
         let chosen = format!("of the shape {}", preset.gap.name());
@@ -161,7 +161,7 @@ mod tests {
         assert!((number(&preset, "gap.wavelength") - 0.04).abs() < 1e-16);
         assert!((number(&preset, "gap.amplitude") - 0.004).abs() < 1e-16);
         for (sets, words) in [
-            (["gap.shape=sphere", "groups.wavelength_over_radius=0.1"], "belongs to wavy-sphere"),
+            (["gap.shape=sphere", "groups.wavelength_over_radius=0.1"], "belongs to gap.shape = wavy-sphere"),
             (
                 ["title=x", "groups.adhesion=-1"],
                 "--set groups.adhesion=-1: groups.adhesion = -1.0 is out of range",

@@ -129,7 +129,7 @@ pub enum Invalid {
     OtherChoice {
         /// The key.
         key: Key,
-        /// The words of the choice it belongs to.
+        /// The choice it belongs to, such as `gap.shape = cone`.
         belongs: String,
         /// What was chosen, in one word, such as `gap`.
         what: &'static str,

@@ -212,7 +212,7 @@ impl Spec {
         }
         for axis in &self.axes {
             let blind = self.columns.iter().filter(|column| column.is_blind_to(&axis.key));
-            let names: Vec<&str> = blind.map(|column| column.quantity.name).collect();
+            let names: Vec<String> = blind.map(QuantityColumn::name).collect();
             if !names.is_empty() {
                 warnings.push(format!(
                     "{}: of an infinitely slow path, the same for every {}; of a pull at a rate are peak_force, \
@@ -223,7 +223,7 @@ impl Spec {
             }
         }
         let of_unloading = self.columns.iter().filter(|column| column.is_of_unloading());
-        let names: Vec<&str> = of_unloading.map(|column| column.quantity.name).collect();
+        let names: Vec<String> = of_unloading.map(QuantityColumn::name).collect();
         let turns = self.axes.iter().any(|axis| axis.key.starts_with("path.turn_"));
         if !names.is_empty() && (turns || self.preset.path.begin == Begin::Apart) {
             warnings.push(format!(

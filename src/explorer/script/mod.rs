@@ -53,7 +53,8 @@ mod read;
 pub use fault::{LONGEST, ScriptFault};
 pub(super) use keys::key_called;
 /// The first line of a script that a session writes.
-pub(super) const HEAD: &str = "# A session of pulloff: `pulloff run` walks it again.";
+pub(super) const HEAD: &str =
+    "# A session of pulloff: `pulloff run` walks it again, `pulloff run -v` tells every step.";
 pub use palette::{PaletteEntry, palette};
 pub use parse::{for_script, parse};
 pub use permissions::Permission;

@@ -3,6 +3,7 @@
 
 use super::parts::{is_selected, panel};
 use crate::explorer::log::{EventMark, Log, LogEntry};
+use crate::explorer::node::{Node, NodeKind};
 use crate::explorer::{Inadmissible, Model, ScreenPanel};
 use crate::figure::{Axis, Scale};
 use crate::tui::app::App;
@@ -189,13 +190,16 @@ fn sums(model: &Model, log: &Log, room: usize) -> String {
     let band = totals.dead_band.map(|band| format!(" + dead band {}", energy(band.dissipated, false)));
     let lost = if band.is_some() { "lost in jumps" } else { "lost" };
     let band = band.unwrap_or_default();
+    let is_other = |node: &Node| matches!(node.kind, NodeKind::Jump(_)) && !model.is_of_present_values(node);
+    let has_changed = model.history.path().iter().any(|(_, node)| is_other(node));
+    let here = if has_changed { "at these values" } else { "up to here" };
     [
-        format!("{at_rate}{slow}{pull}{lost} up to here {of}{band}{passed}{ends}"),
-        format!("{at_rate}{slow}{pull}{lost} up to here {of}{band}{ends}"),
-        format!("{slow}{pull}{lost} up to here {of}{band}{passed}{ends}"),
-        format!("{slow}{pull}{lost} up to here {of}{band}{ends}"),
+        format!("{at_rate}{slow}{pull}{lost} {here} {of}{band}{passed}{ends}"),
+        format!("{at_rate}{slow}{pull}{lost} {here} {of}{band}{ends}"),
+        format!("{slow}{pull}{lost} {here} {of}{band}{passed}{ends}"),
+        format!("{slow}{pull}{lost} {here} {of}{band}{ends}"),
         format!("{short}{pull}{lost} {of}{band}{ends}"),
-        format!("{slow}{lost} up to here {of}{band}{ends}"),
+        format!("{slow}{lost} {here} {of}{band}{ends}"),
         format!("{short}{lost} {of}{band}{ends}"),
         format!("{short}{lost} {of}{band}"),
         format!("{short}lost {of}{band}"),

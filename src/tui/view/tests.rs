@@ -481,13 +481,13 @@ fn what_lies_behind_a_turned_value_is_passed_by_and_did_not_happen_at_it() {
     screen.keys(">");
     let text = screen.text(160, 45);
     assert!(
-        text.contains("-1 ") && text.contains("- passed by") && text.contains("lost up to here 0 of"),
+        text.contains("-1 ") && text.contains("- passed by") && text.contains("lost at these values 0 of"),
         "{text}"
     );
     // The total stays that of the path, as in Result.
     let path = screen.app.model.path().unwrap();
     let [all, passed] = [path.totals.dissipated.unwrap(), path.events[0].dissipated.unwrap()].map(loss);
-    let sums = format!("lost up to here 0 of {all}, {passed} passed by");
+    let sums = format!("lost at these values 0 of {all}, {passed} passed by");
     assert!(text.contains(&sums) && text.contains(&format!("lost in all {all}")), "{sums} {text}");
     assert!(screen.text(80, 24).contains(&format!("0 of {all}")), "{text}");
     screen.keys("nn>");

@@ -330,7 +330,7 @@ fn a_shape_drops_and_brings_its_keys() {
     preset.set("gap.shape", "sphere".into()).unwrap();
     assert_eq!(preset.gap, Shape::Sphere { radius_of_curvature: 1.0 });
     let wave = preset.set("gap.amplitude", 0.1.into()).unwrap_err();
-    assert_eq!(wave.to_string(), "gap.amplitude belongs to wavy-sphere, and the gap is a sphere");
+    assert_eq!(wave.to_string(), "gap.amplitude belongs to gap.shape = wavy-sphere, and the gap is a sphere");
     preset.set("gap.shape", "wavy-sphere".into()).unwrap();
     assert_eq!(preset, wavy());
 }
@@ -342,7 +342,7 @@ fn a_basis_drops_the_keys_of_the_other() {
     assert_eq!(preset.basis, BasisSpec::Exact);
     assert_eq!(preset.get("basis.rings"), None);
     let few = preset.set("basis.rings", 48.into()).unwrap_err();
-    assert_eq!(few.to_string(), "basis.rings belongs to rings, and the basis is exact");
+    assert_eq!(few.to_string(), "basis.rings belongs to basis.kind = rings, and the basis is exact");
     preset.set("basis.kind", "rings".into()).unwrap();
     assert_eq!(preset, wavy());
 }

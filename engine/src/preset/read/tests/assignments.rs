@@ -63,7 +63,11 @@ fn a_basis_drops_and_brings_its_keys() {
         BasisSpec::Rings { rings: 9, grading: Grading::Uniform }
     );
     for (old, new, expected) in [
-        ("\"rings\"", "\"exact\"", "w.toml:13: basis.rings belongs to rings, and the basis is exact"),
+        (
+            "\"rings\"",
+            "\"exact\"",
+            "w.toml:13: basis.rings belongs to basis.kind = rings, and the basis is exact",
+        ),
         (
             "\"rings\"",
             "\"exat\"",
@@ -158,7 +162,7 @@ fn a_wrong_assignment_is_named() {
     let lines = messages(WAVY, &["gap.shape=sphere", "gap.amplitude=1"]);
     assert_eq!(
         lines,
-        ["--set gap.amplitude=1: gap.amplitude belongs to wavy-sphere, and the gap is a sphere"]
+        ["--set gap.amplitude=1: gap.amplitude belongs to gap.shape = wavy-sphere, and the gap is a sphere"]
     );
     let sphere =
         "[material]\neffective_modulus=1\nwork_of_adhesion=0\n[gap]\nshape='sphere'\nradius_of_curvature=1";

@@ -96,8 +96,8 @@ fn stray_wave_keys_on_a_sphere_are_named() {
     assert_eq!(
         lines,
         [
-            "w.toml:9: gap.amplitude belongs to wavy-sphere, and the gap is a sphere",
-            "w.toml:10: gap.wavelength belongs to wavy-sphere, and the gap is a sphere"
+            "w.toml:9: gap.amplitude belongs to gap.shape = wavy-sphere, and the gap is a sphere",
+            "w.toml:10: gap.wavelength belongs to gap.shape = wavy-sphere, and the gap is a sphere"
         ]
     );
 }
