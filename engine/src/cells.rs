@@ -310,8 +310,9 @@ fn unbracketed(text: &str, dimensions: &[Dimension]) -> ColumnHead {
     match parted.map(|(name, unit)| (name.trim(), unit.trim())) {
         Some((name, unit)) if !name.is_empty() && is_unit(unit) => {
             match name.rsplit_once(char::is_whitespace) {
-                Some((name, factor)) if is_power_of_ten(factor) => {
-                    (name.trim().to_owned(), Some(format!("{factor} {unit}")))
+                // Behind more words a number counts channels.
+                Some((name, factor)) if is_power_of_ten(factor) && !name.contains(char::is_whitespace) => {
+                    (name.to_owned(), Some(format!("{factor} {unit}")))
                 }
                 _ => (name.to_owned(), Some(unit.to_owned())),
             }
@@ -331,10 +332,19 @@ fn is_power_of_ten(word: &str) -> bool {
         || is_begun && number.matches('1').count() == 1 && number.chars().all(|c| "01.".contains(c))
 }
 
-/// Whether text is a multiple of a unit, such as `10 mN`, `10^-3 N` or `N/1000`, or the factor of one.
+/// Whether text is a multiple of a unit, such as `10 mN`, `10^-3 N` or `N/1000`, or the factor of one. A number alone
+/// behind a unit counts columns.
 pub fn is_multiple(text: &str, is_unit: impl Fn(&str) -> bool) -> bool {
-    let is_of_factor = |c: char| c.is_ascii_digit() || " .^+-*·×/()".contains(c);
-    let rest = text.trim_matches(is_of_factor);
-    let has_factor = text.len() > rest.len() && text.contains(|c: char| c.is_ascii_digit());
-    has_factor && if rest.is_empty() { text.contains(['^', '*', '×']) } else { is_unit(rest) }
+    let is_of_factor = |c: char| c.is_ascii_digit() || " .^+-*·×()".contains(c);
+    let has_digit = |text: &str| text.contains(|c: char| c.is_ascii_digit());
+    let rest = text.trim_start_matches(is_of_factor);
+    if rest.is_empty() {
+        return has_digit(text) && text.contains(['^', '*', '×']);
+    }
+    if has_digit(&text[..text.len() - rest.len()]) && is_unit(rest) {
+        return true;
+    }
+    let behind = text.trim_end_matches(|c: char| is_of_factor(c) || c == '/').trim_end();
+    let factor = &text[behind.len()..];
+    has_digit(factor) && factor.contains(['^', '*', '·', '×', '/']) && is_unit(behind)
 }

@@ -255,7 +255,7 @@ impl PlotArguments {
         }
         console.warn(branches.swapped().as_slice());
         console.warn(branches.doubt().as_slice());
-        console.warn(doubt_of_wave(preset, &branches).as_slice());
+        console.note(doubt_of_wave(preset, &branches).as_deref());
         Ok(())
     }
 

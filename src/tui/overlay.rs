@@ -170,6 +170,12 @@ impl Choose {
         found
     }
 
+    /// Whether some line contains this text.
+    pub fn has(&self, text: &str) -> bool {
+        let wanted = text.to_lowercase();
+        self.items.iter().any(|item| item.text.to_lowercase().contains(&wanted))
+    }
+
     /// Whether some lines have a note.
     pub fn has_notes(&self) -> bool {
         self.items.iter().any(|item| !item.note.is_empty())

@@ -152,6 +152,10 @@ pub(super) fn wanted(
         }
         return Err(CurveReadError::Unknown { line, cells, names: known() });
     }
+    notes.extend(refused.iter().filter_map(|(_, error)| match error {
+        CurveReadError::Unit { cause, .. } => Some(format!("{cause}: the column is left out")),
+        _ => None,
+    }));
     Ok(wanted)
 }
 

@@ -206,7 +206,7 @@ fn end_of(x: &[f64], span: ValueRange) -> [bool; 2] {
 }
 
 /// The signs for which the force jumps up from the contact to rows apart, rises with x where the bodies are pressed
-/// together most, and does not rise by more on the way from there to the jump; only those with the sign of x that is `known`, if it is.
+/// together most, and does not rise by more on the way from there to the jump, unless the force is level behind; only those with the sign of x that is `known`, if it is.
 fn by_jumps(
     points: &[MeasuredPoint],
     segments: Option<&[Segment]>,
@@ -231,7 +231,7 @@ fn by_jumps(
             let found = jump(&x, &force)
                 .filter(|jump| jump.at >= if force.len() < FEW { FEWEST } else { IN_CONTACT })
                 .filter(|jump| rises(&x[..jump.at], &force[..jump.at]) == Some(true))
-                .filter(|jump| comes_off(force.split_at(jump.at)))
+                .filter(|jump| comes_off(force.split_at(jump.at)) || still_end(&piece)[0])
                 .filter(|jump| may_rest || !rests(&middle(&x[jump.at..]), &x));
             sum += found.map_or(0.0, |jump| jump.deviations);
         }

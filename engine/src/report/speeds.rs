@@ -104,6 +104,7 @@ impl SpeedsReport {
         let branches = source.branches(&preset.reading()).map_err(SpeedsError::Data)?;
         let case = Case::prepare(preset, progress)?;
         let mut notes = preset.notes_of_reading().map_err(SpeedsError::Data)?;
+        notes.extend(doubt_of_wave(preset, &branches));
         notes.extend(branches.notes.iter().cloned());
         let [sigma_x, sigma_force, _] = branches.noise.sigma;
         let of_file: Vec<MeasuredPoint> = attached(&branches).copied().collect();
@@ -147,7 +148,6 @@ impl SpeedsReport {
         let largest = rows.iter().map(|row| row.contact_radius).fold(0.0, f64::max);
         let mut warnings = case.warnings_of_problem(largest / case.units().length);
         warnings.extend(branches.swapped().into_iter().chain(branches.doubt()).chain(doubt));
-        warnings.extend(doubt_of_wave(preset, &branches));
         warnings.extend(doubt_of_baseline(&reading, preset, &branches));
         warnings.extend(doubts_of_rows(of_file.len() - rows.len() - hidden, ambiguous, hidden, contrary));
         if rows.iter().all(|row| row.speed.is_none()) {

@@ -39,7 +39,8 @@ fn goes_on(choose: &Choose, typed: char) -> Option<Prompt> {
             let (_, line) = choose.current()?;
             (line, line.text.split_whitespace().next().unwrap_or_default())
         }
-        '/' | '.' => {
+        // Titles have these characters, too.
+        '/' | '.' if choose.filter.is_empty() || !choose.has(&format!("{}{typed}", choose.filter)) => {
             let is_of_files = |item: &&Item| matches!(&item.action, Choice::Prompt(prompt) if prompt.purpose == Purpose::Path);
             (choose.items.iter().find(is_of_files)?, &*choose.filter)
         }

@@ -278,7 +278,10 @@ fn text_typed_in_a_list_keeps_the_lines_that_have_it() {
     screen.press(KeyCode::End);
     let Some(Dialog::Choose(choose)) = &screen.app.overlay else { unreachable!() };
     assert_eq!(choose.selected, choose.items.len() - 1);
+    screen.keys("Fig. 9\r");
+    assert_eq!(screen.app.model.source.shown(), "fig-9");
     // A path goes on in the prompt of files.
+    screen.keys("o");
     let path = screen.folder.path().join("own.toml");
     let text = crate::store::shipped::find("cone").unwrap().text;
     std::fs::write(&path, text.replace("Adhesive cone", "My cone")).unwrap();
