@@ -254,6 +254,7 @@ pub fn heads(line: &str, separator: Separator, dimensions: &[Dimension]) -> Vec<
     let mut cells: Vec<ColumnHead> = Vec::new();
     let mut at: ColumnHead = Default::default();
     let mut open: Option<(char, String)> = None;
+    let is_unit = |unit: &str| Unit::parse(unit, 0).is_ok_and(|unit| dimensions.contains(&unit.dimension()));
     let (has_pairs, mut is_quoted) = (line.matches('"').count().is_multiple_of(2), false);
     for c in line.chars() {
         // Inches stand behind a number, a quotation mark before a cell.
@@ -271,7 +272,15 @@ pub fn heads(line: &str, separator: Separator, dimensions: &[Dimension]) -> Vec<
                 {
                     at = before;
                 }
-                at.1 = (!unit.is_empty()).then_some(unit);
+                // Of two texts one is the unit, and the other a remark, which only matters if it is a factor.
+                let is_remark = at.1.as_deref().is_some_and(is_unit) && !is_unit(&unit);
+                let new = Some(unit).filter(|unit| !unit.is_empty());
+                let old = at.1.take();
+                let (unit, remark) = if is_remark { (old, new) } else { (new, old) };
+                at.1 = unit;
+                if let Some(factor) = remark.filter(|remark| has_factor(remark)) {
+                    at.0 = format!("{} {factor}", at.0);
+                }
             }
             (Some((_, unit)), _) => unit.push(c),
             (None, _) if c == '[' || c == '(' => {
@@ -302,29 +311,24 @@ pub fn heads(line: &str, separator: Separator, dimensions: &[Dimension]) -> Vec<
 /// A name with its unit after a slash or a space, if the unit's dimension is one of `dimensions`: `r / um`,
 /// `height nm`.
 ///
-/// Any other word there may mean anything: `r/R` is a ratio. A multiple of a unit is left whole, for no reader to take as
-/// the unit itself.
+/// Any other word there may mean anything: `r/R` is a ratio. The factor of a unit stays with it, so that nobody takes the
+/// unit alone for that of the column.
 fn unbracketed(text: &str, dimensions: &[Dimension]) -> ColumnHead {
     let is_unit = |unit: &str| Unit::parse(unit, 0).is_ok_and(|unit| dimensions.contains(&unit.dimension()));
-    let parted = text.rsplit_once('/').or_else(|| text.rsplit_once(char::is_whitespace));
-    match parted.map(|(name, unit)| (name.trim(), unit.trim())) {
-        Some((name, unit)) if !name.is_empty() && is_unit(unit) => {
-            match name.rsplit_once(char::is_whitespace) {
-                // Behind more words a number counts channels.
-                Some((name, factor)) if is_power_of_ten(factor) && !name.contains(char::is_whitespace) => {
-                    (name.to_owned(), Some(format!("{factor} {unit}")))
-                }
-                _ => (name.to_owned(), Some(unit.to_owned())),
-            }
+    let ways = [text.rsplit_once('/'), text.rsplit_once(char::is_whitespace)];
+    let mut ways = ways.into_iter().flatten().map(|(name, unit)| (name.trim(), unit.trim()));
+    let found = ways.find(|(name, unit)| !name.is_empty() && (is_unit(unit) || is_multiple(unit, is_unit)));
+    let Some((name, unit)) = found else { return (text.to_owned(), None) };
+    match name.rsplit_once(char::is_whitespace) {
+        // Behind several words it is the number of a channel.
+        Some((word, factor)) if is_power_of_ten(factor) && !word.contains(char::is_whitespace) => {
+            (word.to_owned(), Some(format!("{factor} {unit}")))
         }
-        Some((name, unit)) if !name.is_empty() && is_multiple(unit, is_unit) => {
-            (name.to_owned(), Some(unit.to_owned()))
-        }
-        _ => (text.to_owned(), None),
+        _ => (name.to_owned(), Some(unit.to_owned())),
     }
 }
 
-/// Whether a word is a power of ten, as a factor before a unit; smaller numbers count channels.
+/// Whether a word is a power of ten, as a factor before a unit. A smaller number is that of a channel.
 fn is_power_of_ten(word: &str) -> bool {
     let number = word.trim_start_matches(['x', '×', '*', '·']);
     let is_begun = number.starts_with("10") || number.starts_with("0.");
@@ -332,8 +336,8 @@ fn is_power_of_ten(word: &str) -> bool {
         || is_begun && number.matches('1').count() == 1 && number.chars().all(|c| "01.".contains(c))
 }
 
-/// Whether text is a multiple of a unit, such as `10 mN`, `10^-3 N` or `N/1000`, or the factor of one. A number alone
-/// behind a unit counts columns.
+/// Whether text is a multiple of a unit, such as `10 mN`, `10^-3 N` or `N/1000`, or the factor of one. A number behind a
+/// unit, without a sign of multiplication, is that of a column.
 pub fn is_multiple(text: &str, is_unit: impl Fn(&str) -> bool) -> bool {
     let is_of_factor = |c: char| c.is_ascii_digit() || " .^+-*·×()".contains(c);
     let has_digit = |text: &str| text.contains(|c: char| c.is_ascii_digit());
@@ -347,4 +351,13 @@ pub fn is_multiple(text: &str, is_unit: impl Fn(&str) -> bool) -> bool {
     let behind = text.trim_end_matches(|c: char| is_of_factor(c) || c == '/').trim_end();
     let factor = &text[behind.len()..];
     has_digit(factor) && factor.contains(['^', '*', '·', '×', '/']) && is_unit(behind)
+}
+
+/// Whether a name has a factor in it: `Force × 1000`, `Force*10`, `Force 10^3`.
+pub fn has_factor(name: &str) -> bool {
+    let (is_digit, signs) = (|c: char| c.is_ascii_digit(), ['*', '·', '×']);
+    let beside = |(before, behind): (&str, &str)| {
+        behind.trim_start().starts_with(is_digit) || before.trim_end().ends_with(is_digit)
+    };
+    name.contains("10^") || signs.iter().any(|sign| name.split_once(*sign).is_some_and(beside))
 }

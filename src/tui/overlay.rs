@@ -159,8 +159,7 @@ impl Choose {
     pub fn shown(&self) -> Vec<(usize, &Item)> {
         let wanted = self.filter.to_lowercase();
         let items = self.items.iter().enumerate();
-        let mut found: Vec<_> =
-            items.filter(|(_, item)| item.text.to_lowercase().contains(&wanted)).collect();
+        let mut found: Vec<_> = items.filter(|(_, item)| item.has(&wanted)).collect();
         // Lines that begin with the text come first, then those whose name contains it.
         found.sort_by_key(|(_, item)| {
             let text = item.text.to_lowercase();
@@ -173,7 +172,7 @@ impl Choose {
     /// Whether some line contains this text.
     pub fn has(&self, text: &str) -> bool {
         let wanted = text.to_lowercase();
-        self.items.iter().any(|item| item.text.to_lowercase().contains(&wanted))
+        self.items.iter().any(|item| item.has(&wanted))
     }
 
     /// Whether some lines have a note.
@@ -202,6 +201,11 @@ impl Item {
     /// A line that cannot be deleted.
     pub fn new(text: impl Into<String>, action: Choice) -> Self {
         Self { text: text.into(), note: String::new(), action, delete: None }
+    }
+
+    /// Whether it contains this text, which is in lower case.
+    fn has(&self, wanted: &str) -> bool {
+        self.text.to_lowercase().contains(wanted)
     }
 
     /// A word that a value can be, and what it means, which may be empty.

@@ -172,7 +172,7 @@ impl<'a> Posed<'a> {
         if preset.data.uncertain.is_empty() {
             solved = of_tare(&mut problem, solved, options.robust, (&mut notes, progress));
         }
-        // The other minima, too, by the rows and the noise of the last fit.
+        // Other minima were told from the first one before the noise had settled.
         alike.retain(|u| u.len() == solved.minimum.parameters.len());
         if !alike.is_empty() {
             (solved, alike) = nearest(&problem, solved, &alike, options.robust, progress);

@@ -4,7 +4,7 @@ use super::lines::TextTable;
 use super::names::{named, squashed};
 use super::role::{Segment, unit_named};
 use super::words::{Words, count_known, is_branch, is_gap, is_number, is_units, keyed, unit_cells};
-use crate::cells::{ColumnHead, Separator, heads, is_multiple};
+use crate::cells::{ColumnHead, Separator, has_factor, heads, is_multiple};
 use std::collections::HashMap;
 
 /// A header: the names and units of the columns.
@@ -155,7 +155,10 @@ fn whole((name, unit): ColumnHead) -> ColumnHead {
     match unit {
         // The factor of a unit is not part of a name: whether the numbers include it is not known.
         Some(text) if !is_unit(&text) && is_multiple(&text, is_unit) => (name, Some(text)),
-        Some(text) if name.contains("10^") => (name.clone(), Some(format!("{text}, as in {name}"))),
+        Some(text) if has_factor(&name) => {
+            let with = format!("{text}, as in {name}");
+            (name, Some(with))
+        }
         Some(text) if !is_unit(&text) && text != "V" => {
             let longer = format!("{name} {text}");
             // A single letter is the symbol of another quantity only by chance: "approach [A]" is meant in ångström.

@@ -143,8 +143,8 @@ fn as_named(points: &[MeasuredPoint], named: Option<bool>, found: Turned) -> Opt
     (named == Some(!found[0]) && !is_level).then(|| found.map(|is_turned| !is_turned))
 }
 
-/// Whether the force of the rows in `contact` falls, or rises by less than it jumps up to that of the rows behind: read
-/// backwards, the force of a whole contact rises by more, and the jump is one between waves.
+/// Whether the force of the rows in `contact` falls towards the jump, or rises by no more than the jump. A record of
+/// contact alone that is read backwards rises by more: its jump is one between waves.
 fn comes_off((contact, behind): (&[f64], &[f64])) -> bool {
     let quarter = contact.len() / 4;
     // The last rows may be apart already.
@@ -205,8 +205,9 @@ fn end_of(x: &[f64], span: ValueRange) -> [bool; 2] {
     [within < rest, within > rest]
 }
 
-/// The signs for which the force jumps up from the contact to rows apart, rises with x where the bodies are pressed
-/// together most, and does not rise by more on the way from there to the jump, unless the force is level behind; only those with the sign of x that is `known`, if it is.
+/// The signs for which the force jumps up from the contact to rows apart, and rises with x where the bodies are pressed
+/// together most. On the way from there to the jump it must not rise by more than the jump, unless it is level behind. Only
+/// signs with that of x that is `known`, if it is.
 fn by_jumps(
     points: &[MeasuredPoint],
     segments: Option<&[Segment]>,

@@ -31,8 +31,8 @@ fn turned(key: KeyEvent, id: Option<Id>, line: usize, count: usize) -> Option<us
     })
 }
 
-/// The prompt in which a text typed into a list goes on: `stiffness=` in that of the line that begins so, a path in that
-/// of files.
+/// The prompt that a text typed into a list leads to: `stiffness=` to that of the line that begins so, a path to that of
+/// files.
 fn goes_on(choose: &Choose, typed: char) -> Option<Prompt> {
     let (line, begun) = match typed {
         '=' => {
@@ -41,8 +41,9 @@ fn goes_on(choose: &Choose, typed: char) -> Option<Prompt> {
         }
         // Titles have these characters, too.
         '/' | '.' if choose.filter.is_empty() || !choose.has(&format!("{}{typed}", choose.filter)) => {
-            let is_of_files = |item: &&Item| matches!(&item.action, Choice::Prompt(prompt) if prompt.purpose == Purpose::Path);
-            (choose.items.iter().find(is_of_files)?, &*choose.filter)
+            let is_of_files =
+                |action: &Choice| matches!(action, Choice::Prompt(of) if of.purpose == Purpose::Path);
+            (choose.items.iter().find(|item| is_of_files(&item.action))?, &*choose.filter)
         }
         _ => return None,
     };

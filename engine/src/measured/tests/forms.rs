@@ -370,6 +370,10 @@ fn a_multiple_of_a_unit_is_not_the_unit() {
         "depth [um];Force [N] 10^-3",
         "depth [um];Force/10^-3 N",
         "depth [um];Force 10 mN",
+        "depth [um];Force N/1000",
+        "depth [um];Force [mN] *10",
+        "depth [um];Force × 1000 (mN)",
+        "depth [um];Force (×1000) [mN]",
         "depth [0.1 um];Force [mN]",
         "depth [2 um];Force [mN]",
     ] {
@@ -384,11 +388,22 @@ fn a_multiple_of_a_unit_is_not_the_unit() {
         "depth/um.1;Force/mN.1",
         "depth [um];Force / mN 1",
         "depth [um];Force Ch 10 mN",
+        "depth [um];Force [mN] (1)",
+        "depth [um];Force (PDMS) [mN]",
+        "depth [um];Force [mN] (PDMS)",
     ] {
         let measured = parse(file(header).as_bytes(), &ColumnSpec::default());
         let used = measured.as_ref().map(|measured| measured.used.iter().all(|used| used.has_unit));
         assert_eq!(used.map_err(ToString::to_string), Ok(true), "{header}");
     }
+}
+
+#[test]
+fn a_column_left_out_for_its_unit_is_told() {
+    let rows = two(";", 1.0, 1.0).lines().fold(String::new(), |text, row| text + row + ";1\n");
+    let text = format!("depth [um];Force [mN];Time [10 ms]\n{rows}");
+    let notes = parse(text.as_bytes(), &ColumnSpec::default()).unwrap().notes.join("; ");
+    assert!(notes.contains("\"10 ms\" of time") && notes.contains("left out"), "{notes}");
 }
 
 #[test]
