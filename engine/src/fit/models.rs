@@ -134,7 +134,7 @@ pub struct Pair {
     pub models: [AdhesionModel; 2],
     /// By how much the AIC of the other is larger.
     pub difference: f64,
-    /// Whether these points tell them apart.
+    /// Whether the difference tells them apart.
     pub told_apart: bool,
     /// The same in words.
     pub sentence: String,
@@ -238,38 +238,57 @@ fn scores(fits: &[FittedModel]) -> Vec<f64> {
     fits.iter().map(|fitted| fitted.fit.as_ref().map_or(f64::INFINITY, of)).collect()
 }
 
-/// A, raised by the difference that tells two models apart where the model is not determined: it must not win over one
-/// that is as good.
+/// A, raised by the difference that tells two models apart where the model is not determined or does not describe the
+/// points: it must not win over one that is as good.
 fn rank(fitted: &FittedModel, score: f64) -> f64 {
     let is_told = fitted.fit.as_ref().is_ok_and(|fit| fit.direction.is_none());
-    if is_told { score } else { score + APART }
+    let is_refuted = verdict(fitted) == Some(Verdict::DoesNotDescribe);
+    if is_told && !is_refuted { score } else { score + APART }
+}
+
+fn verdict(fitted: &FittedModel) -> Option<Verdict> {
+    fitted.fit.as_ref().ok().map(|fit| fit.verdict)
 }
 
 fn pair(fits: &[FittedModel], scores: &[f64], [best, other]: [usize; 2]) -> Option<Pair> {
     let difference = scores[other] - scores[best];
-    let told_apart = difference > APART;
     let [Some(one), Some(two)] = [best, other].map(|i| fits[i].model) else { return None };
-    let says = |i: usize| fits[i].fit.as_ref().is_ok_and(|fit| fit.verdict == Verdict::Describes);
-    let sentence = match (told_apart, says(best)) {
-        (true, true) => format!(
-            "the points favour {} over {}, whose AIC is larger by {}",
-            one.name(),
-            two.name(),
-            short(difference, 3)
-        ),
+    let verdicts = [best, other].map(|i| verdict(&fits[i]));
+    let sentence = sentence([one, two].map(AdhesionModel::name), verdicts, difference);
+    Some(Pair { models: [one, two], difference, told_apart: difference > APART, sentence })
+}
+
+/// What the AIC of the second, larger by `difference`, and both verdicts say of two models.
+fn sentence([one, two]: [&str; 2], verdicts: [Option<Verdict>; 2], difference: f64) -> String {
+    let by = if difference < 0.0 { "smaller" } else { "larger" };
+    let size = short(difference.abs(), 3);
+    let is_described = verdicts[0] == Some(Verdict::Describes);
+    let is_refuted = verdicts[1] == Some(Verdict::DoesNotDescribe);
+    match (difference > APART, is_described) {
+        (true, true) => format!("the points favour {one} over {two}, whose AIC is {by} by {size}"),
         (true, false) => format!(
-            "{} is nearer to the points than {}, whose AIC is larger by {}, but it does not describe them",
-            one.name(),
-            two.name(),
-            short(difference, 3)
+            "{one} is nearer to the points than {two}, whose AIC is {by} by {size}, but it does not describe them"
+        ),
+        (false, true) if is_refuted => format!(
+            "only {one} describes the points; the AIC of {two} is {by} by {size}, and {APART} would be needed to tell \
+             them apart by it"
         ),
         (false, _) => format!(
-            "the points do not distinguish {} from {}, whose AIC is {} by {}; {APART} would be needed",
-            one.name(),
-            two.name(),
-            if difference < 0.0 { "smaller" } else { "larger" },
-            short(difference.abs(), 3)
+            "the points do not distinguish {one} from {two}, whose AIC is {by} by {size}; {APART} would be needed"
         ),
-    };
-    Some(Pair { models: [one, two], difference, told_apart, sentence })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::sentence;
+    use crate::fit::verdict::Verdict::{Describes, DoesNotDescribe, NotDetermined};
+
+    #[test]
+    fn a_model_that_is_refuted_is_told_apart_whatever_its_aic() {
+        let of = |verdict, difference| sentence(["a", "b"], [Some(Describes), Some(verdict)], difference);
+        assert!(of(DoesNotDescribe, -3.0).starts_with("only a describes the points; the AIC of b is smaller by 3"));
+        assert!(of(NotDetermined, 3.0).starts_with("the points do not distinguish a from b"));
+        assert!(of(DoesNotDescribe, 11.0).starts_with("the points favour a over b"));
+    }
 }
