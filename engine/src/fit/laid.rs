@@ -62,8 +62,6 @@ pub(super) fn laid(
                 (edge::CLOSING_ADHESION, closing.filter(|closing| *closing <= opening).map(Value::from))
             }
             Target::Offset => (OFFSET, Some(instrument.offset.into())),
-            // A baseline that no rows show is known no better by the next fit: it stays as it was given.
-            Target::Baseline if !problem.data.iter().any(|datum| datum.free) => continue,
             Target::Baseline => (BASELINE, Some(instrument.baseline.into())),
             Target::Tilt => (TILT, Some(instrument.tilt.into())),
         };
@@ -83,13 +81,17 @@ pub(super) fn laid(
 
 /// What is known with an error, as it is written in a preset.
 fn known_before(preset: &Preset, problem: &FitProblem) -> String {
-    // What was known before stays so: the next fit has the same points, which must count once.
+    // What was known before stays so: the next fit has the same points, which must count once. That holds for a baseline that
+    // no rows show, too, although nobody has written what is known of it.
     let known = uncertain(preset, problem.abscissa, &preset.data.uncertain).unwrap_or_default();
+    let is_known = |parameter: &FreeParameter| {
+        parameter.target == Target::Baseline || known.iter().any(|known| known.target.key() == parameter.key())
+    };
     let known: Vec<String> = problem
         .priors
         .iter()
         .map(|prior| (&problem.parameters[prior.parameter], prior))
-        .filter(|(parameter, _)| known.iter().any(|known| known.target.key() == parameter.key()))
+        .filter(|(parameter, _)| is_known(parameter))
         .map(|(parameter, prior)| written(parameter, prior))
         .collect();
     known.join(",")

@@ -39,6 +39,15 @@ pub const SETTINGS_OF: [&str; 2] = ["file", "preset"];
 /// The words of [`SEGMENT`].
 pub const SEGMENTS: [&str; 2] = ["approach", "retraction"];
 
+/// The signs between a value and its error in [`UNCERTAIN`]; the first one is written.
+pub const BETWEEN: [&str; 2] = ["+-", "±"];
+
+/// The key of one of the values that are given with an error.
+fn key(part: &str) -> &str {
+    let name = part.split_once('=').map_or(part, |(name, _)| name).trim();
+    OF_FILE.into_iter().find(|key| key.strip_prefix("data.") == Some(name)).unwrap_or(name)
+}
+
 /// A measured curve and how it is laid over the model's curve.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct DataSpec {
@@ -74,8 +83,16 @@ impl DataSpec {
     /// The same without the file, and without what holds for it alone.
     #[must_use]
     pub fn without_file(&self) -> Self {
-        let Self { is_alone, free, uncertain, .. } = self.clone();
+        let Self { is_alone, free, .. } = self.clone();
+        let of_setup = |part: &&str| !OF_FILE.contains(&key(part));
+        let uncertain = self.uncertain.split(',').filter(of_setup).collect::<Vec<_>>().join(",");
         Self { is_alone, free, uncertain, ..Self::default() }
+    }
+
+    /// The baseline that is known. One that a fit has left, beside what was known of it before, is not.
+    pub fn known_baseline(&self) -> Option<f64> {
+        let is_found = |part: &str| key(part) == BASELINE && BETWEEN.iter().any(|sign| part.contains(sign));
+        self.baseline.filter(|_| !self.uncertain.split(',').any(is_found))
     }
 
     /// What lies between model and instrument, in the signs of `branches`: what is not given is 0, and the baseline that
