@@ -105,6 +105,12 @@ pub enum CellFault {
     /// A comma and a point in one number. The text is safe to show.
     #[error("\"{0}\" has more than one comma or point: write numbers without thousands separators")]
     Thousands(String),
+    /// Commas that may as well separate thousands. The text is safe to show.
+    #[error(
+        "in \"{0}\", as in all numbers with a comma, three digits follow it: it may separate thousands; write numbers without \
+         thousands separators, and decimals with a point"
+    )]
+    Grouped(String),
     /// A decimal point in a file with decimal commas, or the reverse.
     #[error(
         "\"{text}\" has {}: one of them separates thousands; write all decimals alike",
@@ -127,6 +133,23 @@ pub enum CellFault {
 pub struct Decimals {
     /// The line of the first number with a decimal point, and of the first with a decimal comma.
     marks: [Option<usize>; 2],
+    /// The first number whose comma may separate thousands, with its line.
+    grouped: Option<(usize, String)>,
+    /// Whether a comma of another number marks decimals for sure.
+    is_sure: bool,
+}
+
+/// Whether the comma of a number may separate thousands: `1,234` and `-643,950`, but not `0,950` or `1,2345`.
+fn is_grouped(number: &str) -> bool {
+    let digits = number.trim_start_matches(['+', '-', '\u{2212}']);
+    digits.split_once(',').is_some_and(|(before, behind)| {
+        let is_whole = |text: &str| text.bytes().all(|byte| byte.is_ascii_digit());
+        (1..=3).contains(&before.len())
+            && behind.len() == 3
+            && !before.starts_with('0')
+            && is_whole(before)
+            && is_whole(behind)
+    })
 }
 
 impl Decimals {
@@ -155,6 +178,10 @@ impl Decimals {
         if text.is_empty() {
             return Err(CellFault::Missing(what));
         }
+        if comma && is_grouped(text) {
+            self.grouped.get_or_insert_with(|| (line, quote(text)));
+        }
+        self.is_sure |= comma && !is_grouped(text);
         let mut plain = Cow::Borrowed(text);
         if comma || text.contains(['\u{2212}', 'd', 'D']) {
             // 1.5D-05 is how Fortran writes 1.5e-05.
@@ -167,6 +194,12 @@ impl Decimals {
         } else {
             Err(CellFault::Range { what, text: quote(text) })
         }
+    }
+
+    /// The line of a number whose comma may separate thousands, where no other number tells, and what is wrong with it.
+    pub fn doubtful(&self) -> Option<(usize, CellFault)> {
+        let (line, text) = self.grouped.clone().filter(|_| !self.is_sure)?;
+        Some((line, CellFault::Grouped(text)))
     }
 
     /// What to say of decimals that are written with a comma.

@@ -85,7 +85,8 @@ fn known_before(preset: &Preset, problem: &FitProblem) -> String {
     // no rows show, too, although nobody has written what is known of it.
     let known = uncertain(preset, problem.abscissa, &preset.data.uncertain).unwrap_or_default();
     let is_known = |parameter: &FreeParameter| {
-        parameter.target == Target::Baseline || known.iter().any(|known| known.target.key() == parameter.key())
+        parameter.target == Target::Baseline
+            || known.iter().any(|known| known.target.key() == parameter.key())
     };
     let known: Vec<String> = problem
         .priors

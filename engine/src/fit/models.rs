@@ -287,7 +287,10 @@ mod tests {
     #[test]
     fn a_model_that_is_refuted_is_told_apart_whatever_its_aic() {
         let of = |verdict, difference| sentence(["a", "b"], [Some(Describes), Some(verdict)], difference);
-        assert!(of(DoesNotDescribe, -3.0).starts_with("only a describes the points; the AIC of b is smaller by 3"));
+        assert!(
+            of(DoesNotDescribe, -3.0)
+                .starts_with("only a describes the points; the AIC of b is smaller by 3")
+        );
         assert!(of(NotDetermined, 3.0).starts_with("the points do not distinguish a from b"));
         assert!(of(DoesNotDescribe, 11.0).starts_with("the points favour a over b"));
     }

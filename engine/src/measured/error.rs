@@ -33,6 +33,19 @@ pub enum CurveFault {
         /// What is wrong.
         fault: CellFault,
     },
+    /// A unit other than that of the same column in the tables before.
+    #[error("column {number} is in {unit} here and in {before} before: write all tables in the same units")]
+    Unit {
+        /// The column, from 1.
+        number: usize,
+        /// Its unit.
+        unit: String,
+        /// Its unit before.
+        before: String,
+    },
+    /// Decimals that may be thousands.
+    #[error(transparent)]
+    Decimals(CellFault),
     /// An unknown branch.
     #[error(
         "column {number}: the segment \"{text}\" is not known: expected approach or retraction, or False or True"
@@ -42,6 +55,18 @@ pub enum CurveFault {
         number: usize,
         /// Its text, safe to show.
         text: String,
+    },
+    /// Numbers for the branches whose meaning differs between instruments.
+    #[error(
+        "column {number}: which branches are numbered {numbers} is not known: 0 is an approach, 1 a retraction, and 2 a pause between \
+         them. Write approach and retraction in the column, or leave it out by naming the others in --columns or \
+         data.columns"
+    )]
+    Numbered {
+        /// The column, from 1.
+        number: usize,
+        /// The numbers, in their order.
+        numbers: String,
     },
 }
 

@@ -11,7 +11,7 @@
 //! the file states about its instrument. Rows without a number in a column that is used are left out and counted. The
 //! first faults are reported with line and column; a file with faults yields no curve.
 
-use super::choice::{WantedColumn, in_si, open, sides, wanted};
+use super::choice::{self, WantedColumn, in_si, open, sides};
 use super::error::{CurveFault, CurveReadError, ROW_RANGE};
 use super::header::{Header, headed, same, segment};
 use super::lines::{Outline, TextTable};
@@ -22,6 +22,7 @@ pub use super::rows::{Column, Measured, UsedColumn};
 use super::stated::FileSettings;
 use crate::cells;
 use crate::text::{decode, quote, sanitize};
+use crate::units::Unit;
 use std::borrow::Cow;
 
 /// This many values of a column are shown when choosing it.
@@ -58,6 +59,8 @@ struct Pieces<'a> {
     /// Whether their columns stand side by side, one wave in each.
     are_beside: bool,
     header: Option<Header>,
+    /// The headers of further tables that continue the one of `header`.
+    further: Vec<Header>,
     notes: Vec<String>,
 }
 
@@ -85,8 +88,10 @@ pub fn parse(bytes: &[u8], spec: &ColumnSpec) -> Result<Measured, CurveReadError
     measured.notes.extend(pieces.notes.iter().chain(&settings.notes).cloned());
     let mut state = CellFindings::default();
     pieces.read(spec, settings.is_si, &mut measured, &mut state)?;
+    state.judge_numbers();
     let lines = pieces.outline.faults.iter().map(|(line, fault)| (*line, fault.clone().into()));
-    let faults = std::mem::take(&mut state.faults).and(lines);
+    let doubtful = state.decimals.doubtful().map(|(line, fault)| (line, CurveFault::Decimals(fault)));
+    let faults = std::mem::take(&mut state.faults).and(lines.chain(doubtful));
     if faults.total > 0 {
         return Err(CurveReadError::Faults(faults));
     }
@@ -159,7 +164,8 @@ impl<'a> Pieces<'a> {
         }
         let waves = outline.tables.iter().filter(|table| table.cells == 1).count();
         let are_beside = waves > 1 && outline.is_igor && waves == outline.tables.len();
-        let mut pieces = Self { outline, tables: Vec::new(), are_beside, header: None, notes: Vec::new() };
+        let (tables, further, notes) = (Vec::new(), Vec::new(), Vec::new());
+        let mut pieces = Self { outline, tables, are_beside, header: None, further, notes };
         if are_beside {
             pieces.tables = (0..waves).collect();
             pieces.joined(&headers)?;
@@ -170,7 +176,9 @@ impl<'a> Pieces<'a> {
                 .rev()
                 .max_by_key(|(tables, rows)| (pieces.outline.tables[tables[0]].cells > 1, *rows));
             pieces.tables = longest.map(|(tables, _)| tables.clone()).unwrap_or_default();
-            pieces.header = pieces.tables.iter().find_map(|at| headers[*at].clone());
+            let mut own = pieces.tables.iter().filter_map(|at| headers[*at].clone());
+            pieces.header = own.next();
+            pieces.further = own.collect();
             pieces.tell();
         }
         Ok(pieces)
@@ -295,10 +303,28 @@ impl<'a> Pieces<'a> {
                 ));
                 sides
             }
-            None => [wanted(spec, header, line, width, &mut measured.notes)?, Vec::new()],
+            None => [choice::wanted(spec, header, line, width, &mut measured.notes)?, Vec::new()],
         };
         if is_si {
             in_si(&mut wanted);
+        }
+        for further in &self.further {
+            let own = match sides(further).filter(|_| !retraction.is_empty()) {
+                Some(own) => own.concat(),
+                None => choice::wanted(spec, Some(further), line, width, &mut Vec::new())?,
+            };
+            let faults = own.iter().filter_map(|column| {
+                let before = wanted.iter().chain(&retraction).find(|before| before.at == column.at)?;
+                let (unit, before) = (column.unit.as_ref()?, before.unit.as_ref());
+                let is_same = before.is_some_and(|before| before.is_same(unit));
+                let before = || before.map_or_else(|| "no unit".to_owned(), Unit::ascii);
+                (!is_same).then(|| CurveFault::Unit {
+                    number: column.at + 1,
+                    unit: unit.ascii(),
+                    before: before(),
+                })
+            });
+            faults.for_each(|fault| state.faults.add(further.line, fault));
         }
         if retraction.is_empty() {
             let used = |want: &WantedColumn| UsedColumn {

@@ -76,6 +76,8 @@ pub(super) struct CellFindings {
     pub skipped: Option<usize>,
     /// What is wrong.
     pub faults: Faults<CurveFault>,
+    /// The numbers that stand for branches, in the order in which they appear, each with its line and column.
+    numbers: Vec<(u8, usize, usize)>,
 }
 
 impl CellFindings {
@@ -103,6 +105,9 @@ impl CellFindings {
                 is_whole = false;
             } else if want.role == ColumnRole::Segment {
                 segment = Segment::of(text);
+                if let (Some(number), true) = (segment, text.parse::<f64>().is_ok()) {
+                    self.numbered(number, line, want.at + 1);
+                }
                 if segment.is_none() {
                     return self
                         .faults
@@ -128,6 +133,31 @@ impl CellFindings {
         }
         if let (Some(segments), Some(segment)) = (&mut measured.segments, segment) {
             segments.push(segment);
+        }
+    }
+
+    /// Takes note of a branch that is given by a number.
+    fn numbered(&mut self, branch: Segment, line: usize, column: usize) {
+        let number = match branch {
+            Segment::Approach => 0,
+            Segment::Retraction => 1,
+            Segment::Other => 2,
+        };
+        if self.numbers.iter().all(|(known, ..)| *known != number) {
+            self.numbers.push((number, line, column));
+        }
+    }
+
+    /// Refuses numbers of branches unless they are 0 and 1, or 0, 2 and 1 in this order: others count from 1, or give the pause
+    /// the number 1.
+    pub(super) fn judge_numbers(&mut self) {
+        let numbers: Vec<u8> = self.numbers.iter().map(|(number, ..)| *number).collect();
+        let Some((_, line, number)) = self.numbers.iter().copied().find(|(number, ..)| *number == 2) else {
+            return;
+        };
+        if numbers != [0, 2, 1] {
+            let numbers = numbers.iter().map(u8::to_string).collect::<Vec<_>>().join(", ");
+            self.faults.add(line, CurveFault::Numbered { number, numbers });
         }
     }
 

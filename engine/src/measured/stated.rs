@@ -134,12 +134,16 @@ impl FileSettings {
             (None, _) => return,
         };
         let Some((setting, dimension, needs_unit)) = setting(&name) else { return };
-        let (number, behind) = value.split_once(char::is_whitespace).unwrap_or((&value, ""));
-        // A sentence continues with other settings.
-        let behind = behind.split([',', ';']).next().unwrap_or_default();
-        let pointed = number.replace(',', ".");
-        let Ok(number) = pointed.parse::<f64>() else { return };
-        let unit = Some(clean(behind)).filter(|behind| !behind.is_empty()).or(unit);
+        let Some((number, pointed, behind)) = number_and_rest(&value) else {
+            if value.starts_with(['<', '>', '~', '≈', '≤', '≥']) {
+                let (name, value) = (quote(&name), quote(&value));
+                self.notes.push(format!(
+                    "the file states {name}: {value}, which is no single value: it is not used"
+                ));
+            }
+            return;
+        };
+        let unit = Some(unit_in(behind)).filter(|unit| !unit.is_empty()).map(str::to_owned).or(unit);
         let parsed = unit.as_deref().map(|unit| Unit::parse(unit, 0).ok());
         let unit = match parsed {
             Some(Some(unit)) if unit.dimension() == dimension => Some(unit),
@@ -191,6 +195,23 @@ impl FileSettings {
             Some(_) => {}
         }
     }
+}
+
+/// The number at the beginning of a value, its text with a decimal point, and the rest, which may follow without a space.
+fn number_and_rest(value: &str) -> Option<(f64, String, &str)> {
+    let is_of_number = |c: char| c.is_ascii_digit() || "+-.,eE".contains(c);
+    let most = value.find(|c| !is_of_number(c)).unwrap_or(value.len());
+    (1..=most).rev().find_map(|end| {
+        let pointed = value[..end].replace(',', ".");
+        Some((pointed.parse().ok()?, pointed, &value[end..]))
+    })
+}
+
+/// The unit behind a number, without its brackets and what is said further: an error, a remark, other settings.
+fn unit_in(behind: &str) -> &str {
+    let behind = behind.trim_start().trim_start_matches(['(', '[']);
+    let end = ["+-", "+/-"].iter().filter_map(|sign| behind.find(sign)).min().unwrap_or(behind.len());
+    behind[..end].split([',', ';', '(', '[', ')', ']', '±']).next().unwrap_or_default().trim()
 }
 
 /// The setting that `name` names, its dimension, and whether a unit is required.

@@ -64,6 +64,11 @@ pub fn is_parameter(key: &str) -> bool {
     below(key, PARAMETER_TABLE).is_some_and(is_name)
 }
 
+/// Whether a key is the phase of a wave.
+pub fn is_phase(key: &str) -> bool {
+    below(key, WAVE_TABLE).and_then(|rest| rest.split_once('.')).is_some_and(|(_, name)| name == WAVE_KEYS[2])
+}
+
 /// Whether a key is the unit of a parameter.
 pub fn is_unit(key: &str) -> bool {
     key.strip_suffix(".unit").is_some_and(is_parameter)

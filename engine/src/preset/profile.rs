@@ -245,6 +245,9 @@ pub fn parse(bytes: &[u8]) -> Result<ProfileColumns, TextError> {
         (columns.header, columns.units) = units(header, candidate, separator)?;
     }
     columns.notes.extend(decimals.note());
+    if let Some((line, fault)) = decimals.doubtful() {
+        faults.add(line, fault.into());
+    }
     gather(rows, &mut columns, &mut faults);
     if faults.total > 0 {
         return Err(TextError::Faults(faults));

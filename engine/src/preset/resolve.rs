@@ -1,10 +1,10 @@
 //! The units of a preset, and its texts with units converted to numbers in them.
 
 use super::edge;
-use super::family::is_parameter;
+use super::family::{is_parameter, is_phase};
 use super::invalid::Invalid;
 use super::rows::parameter;
-use super::schema::{CHOOSERS, COEFFICIENT, DISPLAY, Key, SYSTEMS, table_of};
+use super::schema::{CHOOSERS, COEFFICIENT, DISPLAY, Key, LIQUID_KEYS, SYSTEMS, table_of};
 use super::value::Value;
 use super::values::{Values, chosen, of_coefficient};
 use crate::problem::Control;
@@ -47,6 +47,12 @@ pub(super) fn resolved(values: &Values, units: &UnitSystem, faults: &mut Vec<Inv
 pub(super) fn in_units(values: &Values, units: &UnitSystem, key: &Key, text: &str) -> Result<f64, Invalid> {
     let fault = |cause: ValueError| Invalid::Units { key: key.clone(), cause };
     let typed = parse_quantity(text).map_err(fault)?;
+    if let Some(degrees) = typed.degrees()
+        && !takes_radians(key)
+    {
+        let in_degrees = (**key == *LIQUID_KEYS[2]).then_some(degrees);
+        return in_degrees.ok_or_else(|| fault(typed.refused(Quantity::Number)));
+    }
     if *units == UnitSystem::Reduced {
         return typed.pure().map_err(fault);
     }
@@ -67,6 +73,11 @@ pub(super) fn in_units(values: &Values, units: &UnitSystem, key: &Key, text: &st
         // Without an exponent there is no gap, which is reported elsewhere.
         (None, None) => typed.in_own_si().map_err(fault),
     }
+}
+
+/// Whether an angle is in radians there: the phase of a wave, and what a formula takes.
+fn takes_radians(key: &str) -> bool {
+    is_parameter(key) || is_phase(key)
 }
 
 /// What a key measures; `None` for the coefficient of a power law whose exponent gives it no unit.

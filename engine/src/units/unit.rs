@@ -178,9 +178,23 @@ impl Unit {
         self.factors.iter().fold(Dimension::NONE, |sum, factor| sum + factor.unit.dimension * factor.power)
     }
 
+    /// Whether a number means the same in both.
+    pub fn is_same(&self, other: &Self) -> bool {
+        self.dimension() == other.dimension() && self.to_si(1.0).to_bits() == other.to_si(1.0).to_bits()
+    }
+
+    /// Whether an angle is measured in it.
+    pub fn is_angle(&self) -> bool {
+        self.dimension() == Dimension::NONE
+            && self.factors.iter().any(|factor| factor.unit.dimension == Dimension::NONE)
+    }
+
     /// What is measured in it, with the article: 30 mJ/m² is an energy per area, 30 mN/m a force per length.
     pub fn measures(&self) -> String {
         let dimension = self.dimension();
+        if self.is_angle() {
+            return "an angle".to_owned();
+        }
         if dimension != Dimension::new(0, 1, -2) {
             return dimension.to_string();
         }
@@ -324,7 +338,7 @@ mod tests {
             ("/um/mm", 1e9, "an inverse area", "µm⁻¹/mm", "um^-1/mm"),
             ("m/s", 1.0, "a speed", "m/s", "m/s"),
             ("m s^-2", 1.0, "of dimension m s^-2", "m/s²", "m/s^2"),
-            ("deg", std::f64::consts::PI / 180.0, "a pure number", "°", "deg"),
+            ("deg", std::f64::consts::PI / 180.0, "an angle", "°", "deg"),
         ] {
             let unit = Unit::parse(text, 0).unwrap();
             assert_eq!(unit.to_si(1.0).to_bits(), f64::to_bits(si), "{text}: {}", unit.to_si(1.0));

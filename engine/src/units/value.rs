@@ -127,7 +127,7 @@ impl TypedValue {
         if let Some(own) = &self.unit
             && own.dimension() != expected.dimension()
         {
-            return Err(ValueError::Dimension { expected, text: self.text.clone(), got: own.measures() });
+            return Err(self.refused(expected));
         }
         self.in_si_of(unit)
     }
@@ -148,6 +148,20 @@ impl TypedValue {
         } else {
             Err(ValueError::NotFinite { text: self.text.clone() })
         }
+    }
+
+    /// An angle in degrees; `None` of what has not the unit of an angle.
+    pub fn degrees(&self) -> Option<f64> {
+        let unit = self.unit.as_ref().filter(|unit| unit.is_angle())?;
+        // Degrees stay as they are typed.
+        let is_degree = unit.to_si(1.0).to_bits() == 1_f64.to_radians().to_bits();
+        Some(if is_degree { self.number } else { unit.to_si(self.number).to_degrees() })
+    }
+
+    /// That another quantity was expected.
+    pub fn refused(&self, expected: Quantity) -> ValueError {
+        let got = self.unit.as_ref().map_or_else(String::new, Unit::measures);
+        ValueError::Dimension { expected, text: self.text.clone(), got }
     }
 
     /// The value of a quantity without units; an angle in degrees counts as a pure number too.

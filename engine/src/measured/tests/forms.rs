@@ -317,13 +317,24 @@ fn settings_are_found_in_every_usual_form() {
         "\"\\Spring Constant: 0.25\"",
         "Cantilever spring constant = 0.25 N/m",
         "cantilever stiffness: 250 pN/nm",
+        "Spring constant: 0.25N/m",
+        "k = 250mN/m",
+        "Spring constant: 0.25 N/m +- 0.1",
+        "Spring constant: 0.25 N/m (thermal)",
+        "Spring constant: 0.25 (N/m)",
+        "Spring constant: 2.5e-1N/m ± 10 %",
     ] {
         let found = stated(line).stiffness.unwrap_or_else(|| panic!("{line}"));
         assert!((found.value - 0.25).abs() < 1e-12, "{line}: {found:?}");
     }
-    for line in
-        ["Tip radius (um)\t2.5", "Sphere diameter: 5 um", "# indenter radius = 2500 nm", "R [um]: 2,5"]
-    {
+    for line in [
+        "Tip radius (um)\t2.5",
+        "Sphere diameter: 5 um",
+        "# indenter radius = 2500 nm",
+        "R [um]: 2,5",
+        "Tip radius: 2.5um",
+        "Tip radius: 2500nm (nominal)",
+    ] {
         let found = stated(line).radius.unwrap_or_else(|| panic!("{line}"));
         assert!((found.value - 2.5e-6).abs() < 1e-15, "{line}: {found:?}");
     }
@@ -337,11 +348,81 @@ fn settings_are_found_in_every_usual_form() {
         "{:?}",
         unknown.notes
     );
+    let bound = stated("Tip radius: < 25 um");
+    assert!(bound.radius.is_none() && bound.notes[0].contains("no single value"), "{:?}", bound.notes);
     let two = stated("k (N/m)\t0.25\nk (N/m)\t0.5");
     assert!(two.stiffness.is_some() && two.notes[0].contains("two springs"), "{:?}", two.notes);
     // A rounded value does not contradict.
     let rounded = stated("k (N/m)\t0.25").stiffness.unwrap();
     assert!(rounded.is(0.2541) && !rounded.is(0.26));
+}
+
+/// A second table with other units below the first is refused, whichever way they are written.
+#[test]
+fn tables_that_continue_each_other_have_the_same_units() {
+    let [down, up] = [false, true].map(|is_up| lines(&half(is_up), |_, x, p| format!("{x:?},{p:?}")));
+    let below = |first: &str, second: &str| {
+        parse(format!("{first}\n{down}\n{second}\n{up}").as_bytes(), &ColumnSpec::default())
+    };
+    for (first, second, said) in [
+        ("Depth [nm],Load [nN]", "Depth [nm],Load [gf]", "line 13: column 2 is in gf here and in nN before"),
+        ("Depth [nm],Load [nN]", "Depth [um],Load [nN]", "line 13: column 1 is in um here and in nm before"),
+        ("Depth,Load\nnm,nN", "Depth,Load\num,nN", "column 1 is in um here and in nm before"),
+        ("Depth,Load", "Depth [um],Load [nN]", "column 1 is in um here and in no unit before"),
+    ] {
+        let refused = below(first, second).unwrap_err().to_string();
+        assert!(refused.contains(said), "{first} {second}: {refused}");
+    }
+    for second in ["Depth [nm],Load [nN]", "Depth,Load", "Depth (nm),Load (nN)"] {
+        let read = below("Depth [nm],Load [nN]", second).unwrap();
+        assert_eq!(read.columns[1].values.len(), 20, "{second}");
+    }
+    let micro = ["Depth [um],Load [mN]", "Depth [µm],Load [mN]"];
+    assert_eq!(below(micro[0], micro[1]).unwrap().columns[0].values.len(), 20);
+}
+
+#[test]
+fn numbers_of_branches_are_those_of_one_convention() {
+    let file = |codes: [&str; 3]| {
+        let pause = lines(&[[62.5, 20.0]; 4], |_, x, p| format!("{x:?},{p:?},{}", codes[1]));
+        let [down, up] = [(false, codes[0]), (true, codes[2])]
+            .map(|(is_up, code)| lines(&half(is_up), |_, x, p| format!("{x:?},{p:?},{code}")));
+        let pause = if codes[1].is_empty() { String::new() } else { pause };
+        let text = format!("depth [nm],load [nN],segment\n{down}{pause}{up}");
+        parse(text.as_bytes(), &ColumnSpec::default())
+    };
+    for (codes, pauses) in [(["0", "", "1"], 0), (["0", "2", "1"], 4), (["0.0", "2.0", "1.0"], 4)] {
+        let segments = file(codes).unwrap().segments.unwrap();
+        let count = |of| segments.iter().filter(|segment| **segment == of).count();
+        let found = [Segment::Approach, Segment::Other, Segment::Retraction].map(count);
+        assert_eq!(found, [10, pauses, 10], "{codes:?}");
+    }
+    for (codes, said) in [
+        (["1", "", "2"], "line 12: column 3: which branches are numbered 1, 2 is not known"),
+        (["0", "1", "2"], "line 16: column 3: which branches are numbered 0, 1, 2 is not known"),
+        (["0", "", "2"], "which branches are numbered 0, 2 is not known"),
+    ] {
+        let refused = file(codes).unwrap_err().to_string();
+        assert!(refused.contains(said) && refused.contains("--columns"), "{codes:?}: {refused}");
+    }
+}
+
+#[test]
+fn a_comma_that_may_separate_thousands_is_refused() {
+    let file = |write: fn(f64) -> String| {
+        let rows =
+            lines(&half(false), |i, _, p| format!("{};{}", write(50.0 * (i + 3) as f64 + 0.95), p * 1e6));
+        parse(format!("depth [nm];load [nN]\n{rows}").as_bytes(), &ColumnSpec::default())
+    };
+    let refused = file(|x| format!("{x:.3}").replace('.', ",")).unwrap_err().to_string();
+    assert!(refused.contains("line 2: in \"150,950\", as in all numbers with a comma"), "{refused}");
+    for write in [
+        |x: f64| format!("{x:.2}").replace('.', ","),
+        |x: f64| format!("{:.3}", x - 300.0).replace('.', ","),
+        |x: f64| format!("{:.3}", x + 500.0).replace('.', ","),
+    ] {
+        assert_eq!(file(write).unwrap().columns[0].values.len(), 10);
+    }
 }
 
 #[test]

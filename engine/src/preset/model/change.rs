@@ -294,7 +294,11 @@ impl Preset {
 /// The number that a text gives for a group, which has no unit.
 fn pure(row: &Parameter, text: &str) -> Result<f64, Invalid> {
     let cause = |cause| Invalid::Units { key: row.key.clone(), cause };
-    parse_quantity(text).and_then(|typed| typed.in_si(Quantity::Number, None)).map_err(cause)
+    let typed = parse_quantity(text).map_err(cause)?;
+    if typed.degrees().is_some() {
+        return Err(cause(typed.refused(Quantity::Number)));
+    }
+    typed.in_si(Quantity::Number, None).map_err(cause)
 }
 
 /// Stores a checked value; a part of a value becomes the whole.

@@ -3,7 +3,7 @@
 use super::{WAVY, edited, messages, set};
 use crate::gap::Shape;
 use crate::preset::model::BasisSpec;
-use crate::preset::{read, read_with};
+use crate::preset::{Value, read, read_with};
 use crate::problem::{Control, Start};
 use crate::ritz::Grading;
 
@@ -27,6 +27,32 @@ fn assignments_are_laid_over_the_file_in_order() {
     assert_eq!(set(&["path.start_force=0.02"]).path.start, Start::Force(0.02));
     assert_eq!(set(&["path.start_force=0.02", "path.start_approach=1"]).path.start, Start::Approach(1.0));
     assert_eq!(set(&["gap.shape=sphere"]).gap, Shape::Sphere { radius_of_curvature: 1.0 });
+}
+
+#[test]
+fn angles_are_taken_in_the_unit_of_their_key() {
+    let bridge = "units='SI'\n[gap]\nshape='sphere'\nradius_of_curvature=1e-6\n[material]\neffective_modulus=1e10\n\
+                  adhesion='capillary'\nsurface_tension=0.072\nkelvin_radius=1.5e-9\n[path]\nstart_force=0.0";
+    let angle = |text: &str| read_with("b.toml", bridge, &[&format!("material.contact_angle={text}")]);
+    let degrees = |text: &str| match angle(text).unwrap().get("material.contact_angle") {
+        Some(Value::Number(degrees)) => degrees,
+        other => panic!("{other:?}"),
+    };
+    for text in ["60", "60 deg", "60 °", "60deg"] {
+        assert_eq!(degrees(text).to_bits(), 60_f64.to_bits(), "{text}");
+    }
+    assert!((degrees("350 mrad") - 0.35_f64.to_degrees()).abs() < 1e-12);
+    assert!(angle("95 deg").is_err() && angle("20 nm").is_err());
+    // A slope is no angle; a phase is one.
+    let refused = messages(WAVY, &["gap.shape=cone", "gap.slope=10 deg"]);
+    assert!(refused[0].ends_with("gap.slope: expected a pure number, got 10 deg, an angle"), "{refused:?}");
+    let waves = set(&[
+        "gap.shape=harmonics",
+        "gap.waves.1.amplitude=1e-3",
+        "gap.waves.1.wavelength=0.1",
+        "gap.waves.1.phase=90 deg",
+    ]);
+    assert_eq!(waves.get("gap.waves.1.phase"), Some(std::f64::consts::FRAC_PI_2.into()));
 }
 
 #[test]
