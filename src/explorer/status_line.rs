@@ -127,16 +127,24 @@ fn next(model: &Model) -> String {
     standing(model, node, control)
 }
 
-/// Whether a state that was solved again has the value of the control that the one before it had.
-fn keeps_control(model: &Model, node: &Node, control: Control) -> bool {
-    let before = model.history.parent().and_then(|parent| model.history.node(parent));
-    before.is_some_and(|before| {
-        let [was, is] = [before, node].map(|node| {
-            let state = node.state.in_units(node.setting.units());
-            control.value(state.approach, state.force)
-        });
-        (was - is).abs() <= 1e-9 * was.abs().max(is.abs())
-    })
+/// Whether a state that was solved again has the value of the control that the one before it had: its parent, or what was solved
+/// for the values tried before, from which the walker then went on.
+fn keeps_control(model: &Model, node: &Node) -> bool {
+    // In the units of the states, as a spring's stiffness must be.
+    let control = model.preset.path.control;
+    let held = |node: &Node| {
+        let state = node.state.in_units(node.setting.units());
+        control.value(state.approach, state.force)
+    };
+    let is = held(node);
+    let parent = model.history.parent();
+    let tried = model.history.cursor().and_then(|at| model.history.node(at.checked_sub(1)?));
+    let tried = tried.filter(|tried| tried.parent == parent);
+    [parent.and_then(|parent| model.history.node(parent)), tried]
+        .into_iter()
+        .flatten()
+        .map(held)
+        .any(|was| (was - is).abs() <= 1e-9 * was.abs().max(is.abs()))
 }
 
 /// Where the walker stands and what a step or the next event does, if nothing else is to be said.
@@ -145,7 +153,7 @@ fn standing(model: &Model, node: &Node, control: Control) -> String {
     let runs = if model.runs_inward(node) { "inward" } else { "outward" };
     let held = control_word(control);
     let kept = match control {
-        _ if !keeps_control(model, node, control) => "where the walk begins".to_owned(),
+        _ if !keeps_control(model, node) => "where the walk begins".to_owned(),
         Control::Stiffness(_) => "with the spring's far end held".to_owned(),
         Control::Displacement | Control::Force => format!("at the {held} held"),
     };
@@ -179,7 +187,7 @@ fn standing(model: &Model, node: &Node, control: Control) -> String {
             let help = Id::Help.named();
             format!("Start, stable under {held} control. {next} runs to the first event, {help} helps")
         }
-        (true, NodeKind::Solved) if model.is_at_start() && !keeps_control(model, node, control) => {
+        (true, NodeKind::Solved) if model.is_at_start() && !keeps_control(model, node) => {
             format!("No state of the new path has the value held: now at its start; {next} runs on")
         }
         (_, NodeKind::Solved) if node.on_path.is_some() => {

@@ -240,6 +240,15 @@ impl StudyWish {
         })
     }
 
+    /// Why there is no value although nothing failed: what the meaning of the quantity says of it.
+    fn why_empty(&self) -> String {
+        let meaning = self.column.quantity.meaning;
+        match meaning.find("empty ") {
+            Some(at) => format!("it is {}", &meaning[at..]),
+            None => "it is not defined here".to_owned(),
+        }
+    }
+
     /// The outcome for the value at `index` on the surface of this number; `None` if `progress` asked to stop.
     fn outcome(&self, surface: usize, index: usize, progress: &dyn Progress) -> Option<StudyOutcome> {
         let missing = |fault: Fault| StudyOutcome::Missing(fault.to_string());
@@ -255,7 +264,7 @@ impl StudyWish {
         Some(match (measured.cells.first(), measured.fault) {
             (Some(Some(cell)), _) => StudyOutcome::Found(*cell),
             (_, Some(fault)) => missing(fault),
-            _ => StudyOutcome::Missing("it is not defined here".to_owned()),
+            _ => StudyOutcome::Missing(self.why_empty()),
         })
     }
 

@@ -72,7 +72,7 @@ pub fn figure(subject: &Subject<'_>) -> Figure {
     figure.bounds = Bounds::of(figure.lines.iter().flat_map(|line| line.points.iter().copied()));
     if let Some(at) = here {
         pinned.append(&mut said);
-        figure.notes.insert(0, format!("at @: {}", pinned.join(", ")));
+        figure.notes.insert(0, format!("at @, equal s: {}", pinned.join(", ")));
         figure.marks.push(Mark { sign: Sign::Walker, at });
     }
     figure

@@ -2,7 +2,7 @@
 
 use super::bounds::Bounds;
 use super::curves::{pinned_scale, place};
-use super::parts::{Axis, AxisScale, Figure, Role};
+use super::parts::{Axis, AxisScale, Figure, Line, Role};
 use super::scale::Scale;
 use super::subject::Subject;
 use crate::explorer::pins::letter;
@@ -87,6 +87,19 @@ impl What {
 pub fn on_line(figure: &Figure, role: Role, x: f64) -> Option<(f64, f64)> {
     let drawn = figure.lines.iter().filter(|line| line.role == role).flat_map(|line| &line.points);
     drawn.copied().min_by(|a, b| (a.0 - x).abs().total_cmp(&(b.0 - x).abs()))
+}
+
+/// The point at the x of `at` on the line that is nearest to it there, and the line; `None` where none has that x.
+pub fn on_nearest_line(figure: &Figure, at: (f64, f64)) -> Option<((f64, f64), &Line)> {
+    let crossings = figure.lines.iter().flat_map(|line| {
+        line.points.windows(2).filter_map(move |pair| {
+            let [from, to] = [pair[0], pair[1]];
+            let share = (at.0 - from.0) / (to.0 - from.0);
+            let y = from.1 + share * (to.1 - from.1);
+            ((0.0..=1.0).contains(&share) && y.is_finite()).then_some(((at.0, y), line))
+        })
+    });
+    crossings.min_by(|(a, _), (b, _)| (a.1 - at.1).abs().total_cmp(&(b.1 - at.1).abs()))
 }
 
 /// The state nearest to `at` in a window with these bounds, limit points and landings first; `None` if the view shows

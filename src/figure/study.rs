@@ -121,8 +121,22 @@ pub fn of(data: &StudyData, preset: &Preset, axes: Axes) -> Figure {
         let at = found.iter().find(|(at, _)| (at - x).abs() <= 1e-12 * x.abs());
         figure.marks.extend(at.map(|at| Mark { sign: Sign::Preset, at: *at }));
     }
+    if found.is_empty() {
+        // An empty chart without a word would look as if it were still being computed.
+        figure.missing = why_none(data);
+    }
     figure.notes.extend(notes(data, places.iter().filter(|(_, y)| y.is_none()).count()));
     figure
+}
+
+/// Why no value at all was found, once all are computed.
+fn why_none(data: &StudyData) -> Option<String> {
+    let reasons = data.outcomes.iter().map(|outcome| match outcome {
+        StudyOutcome::Missing(why) => Some(why.as_str()),
+        StudyOutcome::Waits | StudyOutcome::Found(_) => None,
+    });
+    let reasons: Option<Vec<&str>> = reasons.collect();
+    reasons?.first().map(|why| format!("no value anywhere: {why}"))
 }
 
 /// What is not to be seen on the figure, where `without` places have no value.

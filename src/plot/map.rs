@@ -19,15 +19,26 @@ use kuva::render::render::{Primitive, render_multiple};
 use pulloff_engine::report::number::short;
 use pulloff_engine::text::quote;
 use std::collections::VecDeque;
+use std::sync::Arc;
 
 /// The column that shows where snaps begin.
 const SNAPS: &str = "snaps";
 /// The level between no snap and one.
 const ONE_SNAP: f64 = 0.5;
-/// The number of colour bands.
-const BANDS: usize = 12;
+/// The number of levels between bands of one colour.
+const LEVELS: usize = 12;
 /// The largest number of colours for counts; more cannot be told apart.
 const COUNTS: f64 = 12.0;
+
+/// The colour of a value by its share of the range: one for each band, so that the scale beside a map shows the bands as they
+/// are drawn.
+fn color_of_band(share: f64) -> String {
+    /// A level itself begins its band, however it is rounded.
+    const ROUNDING: f64 = 1e-9;
+    let levels = LEVELS as f64;
+    let band = (share * (levels + 1.0) + ROUNDING).floor().clamp(0.0, levels);
+    ColorMap::Viridis.map(band / levels)
+}
 
 /// A quantity over two axes.
 #[derive(Debug, Clone, PartialEq)]
@@ -160,7 +171,8 @@ impl MapChart {
         let [x, y] = &self.values;
         let filled = ContourPlot::new()
             .with_grid(self.filled(), x.clone(), y.clone())
-            .with_n_levels(BANDS)
+            .with_n_levels(LEVELS)
+            .with_colormap(ColorMap::Custom(Arc::new(color_of_band)))
             .with_filled()
             .with_line_color("none")
             .with_legend(plain(&self.quantity));
@@ -332,6 +344,15 @@ mod tests {
         assert!(text.contains("url(#") && text.contains("no value") && text.contains("snaps begin"));
         assert_eq!(map.holes().len(), 1);
         assert_eq!(map.filled()[1], [2.0, 2.0, 4.0]);
+        // The scale has the colours of the bands and no others; the band of the largest value is drawn.
+        let bands: Vec<String> =
+            (0..=LEVELS).map(|band| color_of_band(band as f64 / (LEVELS as f64 + 1.0))).collect();
+        let fills = document.descendants().filter_map(|node| node.attribute("fill"));
+        let of_bands: Vec<&str> = fills.filter(|fill| bands.iter().any(|band| band == fill)).collect();
+        for band in &bands {
+            // Once on the scale at least, once on the map.
+            assert!(of_bands.iter().filter(|fill| *fill == band).count() >= 2, "{band} {of_bands:?}");
+        }
         let full = MapChart { cells: vec![vec![1.5, 2.0, 3.0]; 3], snaps: None, ..map };
         assert!(full.holes().is_empty() && full.legend().is_empty());
     }

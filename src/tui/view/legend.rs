@@ -1,6 +1,6 @@
 //! What the lines and letters of a figure mean; and the cross-hair in words.
 
-use crate::explorer::{Model, View};
+use crate::explorer::{Model, View, pins};
 use crate::figure::{Bounds, Figure, Role, Sign, Subject, map, nearest, reading, study};
 use crate::tui::chart::LegendRow;
 use crate::tui::marks::{glyph, letter, look, rank, style};
@@ -71,11 +71,20 @@ fn meaning(sign: Sign) -> Option<(u8, &'static str)> {
     })
 }
 
+/// Whether the cross-hair of a view reads the nearest of its lines.
+fn has_lines(view: View) -> bool {
+    matches!(
+        view,
+        View::Pressure | View::Gap | View::Energy | View::Unloading | View::Cycle | View::Differences
+    )
+}
+
 /// Where the cross-hair at `at` belongs: on the line of a view that has one value for each place of its axis.
 pub fn on_its_line(subject: &Subject<'_>, view: View, figure: &Figure, at: (f64, f64)) -> (f64, f64) {
     let on = match (view, &subject.study) {
         (View::Study, Some(Ok(data))) => study::place(data, subject.preset, figure, at.0),
         (View::ForceTime, _) => reading::on_line(figure, Role::Pull, at.0),
+        (view, _) if has_lines(view) => reading::on_nearest_line(figure, at).map(|(on, _)| on),
         _ => None,
     };
     on.unwrap_or(at)
@@ -109,6 +118,16 @@ pub fn reading(model: &Model) -> Option<String> {
     Some(match nearest(&subject, view, &bounds, at) {
         // The state comes first: it is new information, and narrow screens cut off the end.
         Some(nearest) => format!("* {}; + {here}", nearest.text(subject.scale())),
-        None => format!("+ {here}"),
+        None => match reading::on_nearest_line(&figure, at).filter(|_| has_lines(view)) {
+            Some((_, line)) if figure.lines.len() > 1 && !line.name.is_empty() => {
+                let pin = if let Role::Pin(number) = line.role {
+                    format!("{} ", pins::letter(number))
+                } else {
+                    String::new()
+                };
+                format!("+ {here} on {pin}{}", line.name)
+            }
+            _ => format!("+ {here}"),
+        },
     })
 }

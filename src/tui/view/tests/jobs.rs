@@ -122,7 +122,7 @@ fn jobs_take_few_keys_that_the_screen_offers() {
 fn questions_of_a_longer_way_have_their_answers() {
     for (keys, said) in [
         // Which of two values is nearer to theory at the third snap.
-        ("\r0.003\rp\r0.004\r3T", &["at @: D ", ", JKR 1971 "][..]),
+        ("\r0.003\rp\r0.004\r3T", &["at @, equal s: D ", ", JKR 1971 "][..]),
         // A spring that makes the second snap vanish.
         ("cjj\r\rjjj:study snaps\rilllllllllll", &["snaps over k", "k ", ": snaps "]),
         // The contact at the worst state.

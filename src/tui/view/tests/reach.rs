@@ -385,7 +385,55 @@ fn differences_tell_curves_apart_that_are_closer_than_a_dot() {
     assert!(text.contains("differences     - nothing to compare with: p pins"), "{text}");
     screen.keys("\x1bp:set gap.amplitude=0.0025000001\r:view differences\r");
     let text = screen.text(200, 40);
-    assert!(text.contains("ΔP/Pc over s/λ") && text.contains("at @: D "), "{text}");
+    assert!(text.contains("ΔP/Pc over s/λ") && text.contains("at @, equal s: D "), "{text}");
+}
+
+#[test]
+fn a_cross_hair_beside_a_line_reads_the_line() {
+    let mut screen = Screen::new("wavy-sphere");
+    screen.keys("p:set gap.amplitude=0.003\r:view differences\ri");
+    let reading = |screen: &Screen| {
+        let text = screen.text(120, 40);
+        let said =
+            text.split("ΔP/Pc ").find(|part| part.contains(" on ")).unwrap_or_else(|| panic!("{text}"));
+        let (value, line) = said.split_once(" on ").unwrap();
+        assert!(
+            line.starts_with("D A 0.0025, at equal ") || line.starts_with("JKR 1971, at equal "),
+            "{line}"
+        );
+        value.parse::<f64>().unwrap()
+    };
+    let first = reading(&screen);
+    screen.press(KeyCode::Left);
+    screen.press(KeyCode::Left);
+    let second = reading(&screen);
+    assert!((first - second).abs() > 1e-3, "{first} {second}");
+}
+
+#[test]
+fn a_study_without_any_value_says_why() {
+    let mut screen = Screen::new("wavy-sphere");
+    screen.keys(":study peak_force\r");
+    let text = screen.text(120, 40);
+    assert!(text.contains("no value anywhere: no pull: edge.exponent"), "{text}");
+    screen.keys(":control force\r:study cycle_loss\r");
+    let text = screen.text(120, 40);
+    assert!(text.contains("no value anywhere: it is empty under a"), "{text}");
+}
+
+#[test]
+fn what_was_held_is_said_after_several_values_and_with_a_spring() {
+    let mut screen = Screen::new("lens");
+    screen.keys(":set material.work_of_adhesion=40mJ/m^2\r");
+    let text = screen.text(120, 40);
+    assert!(text.contains("Solved again with the spring's far end held"), "{text}");
+    let mut screen = Screen::new("wavy-sphere");
+    // The second shape has no state of the displacement held, the third has that of the second.
+    screen.keys(
+        "nn:set gap.shape=formula\r:set gap.formula=r^2/(2*R)+b*exp(-((r-0.15)/0.04)^2)\r:set b=0.002\r",
+    );
+    let text = screen.text(120, 40);
+    assert!(text.contains("Solved again at the displacement held, stable"), "{text}");
 }
 
 #[test]
