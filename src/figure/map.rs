@@ -7,6 +7,7 @@ use super::labels;
 use super::parts::{Figure, Line, Mark, Role, Sign};
 use super::places::Places;
 use super::subject::Subject;
+use super::walk::sign_of;
 use pulloff_engine::preset::{Key, Preset};
 use pulloff_engine::problem::Control;
 use pulloff_engine::report::MapReport;
@@ -99,10 +100,7 @@ fn events(report: &MapReport, subject: &Subject<'_>, x: &Places, y: &Places) -> 
         "force" => event.before.as_ref().map(|before| before.force),
         _ => Some(event.control),
     };
-    let sign = |event: &EventReport, number| {
-        if event.after.is_some() { Sign::Event(number) } else { Sign::LastContact(number) }
-    };
-    events.zip(1..).map(|(event, n)| Mark { sign: sign(event, n), at: (x, y.at(place(event))) }).collect()
+    events.map(|event| Mark { sign: sign_of(event), at: (x, y.at(place(event))) }).collect()
 }
 
 /// The curve of limit points that passes through the mark of an event.

@@ -76,6 +76,8 @@ pub enum Sign {
     Limit,
     /// The state in which an event of the path begins, by its number from 1.
     Event(usize),
+    /// The same of an event that begins at no limit point: a touch, a turn, an end of contact within a zone.
+    Passing(usize),
     /// The event that ends a path, by its number: the bodies come apart. 0 where the numbers on the screen are those of
     /// another path.
     LastContact(usize),

@@ -6,7 +6,9 @@ use super::subject::Subject;
 use crate::explorer::View;
 use crate::explorer::node::{Node, NodeKind};
 use pulloff_engine::problem::Control;
+use pulloff_engine::quasistatic::path::EventKind;
 use pulloff_engine::quasistatic::{PathState, State};
+use pulloff_engine::report::path::EventReport;
 
 /// The position of bodies that are apart: the device holds its approach, its load, or its slack spring.
 pub fn apart(control: Control, before: &State, control_value: f64) -> State {
@@ -25,6 +27,16 @@ pub fn quantities(state: &State) -> [f64; 3] {
     [state.approach, state.force, state.contact_radius]
 }
 
+/// The sign of an event. Those that are no snaps begin where crests meet, contact ends within a zone, or the control turns.
+pub fn sign_of(event: &EventReport) -> Sign {
+    let begins_at_limit = [EventKind::Snap, EventKind::SnapIn].iter().any(|kind| kind.name() == event.kind);
+    match &event.after {
+        None => Sign::LastContact(event.number),
+        Some(_) if begins_at_limit => Sign::Event(event.number),
+        Some(_) => Sign::Passing(event.number),
+    }
+}
+
 /// Where the events of the path begin, as marks.
 pub fn events_before<'a>(
     subject: &Subject<'a>,
@@ -33,8 +45,7 @@ pub fn events_before<'a>(
 ) -> impl Iterator<Item = Mark> + 'a {
     let events = subject.path.into_iter().flat_map(|path| &path.events);
     events.filter_map(move |event| {
-        let number = event.number;
-        let sign = if event.after.is_none() { Sign::LastContact(number) } else { Sign::Event(number) };
+        let sign = sign_of(event);
         let state = event.before.as_ref().or(event.after.as_ref())?;
         Some(Mark { sign, at: scale.place(view, [state.approach, state.force, state.contact_radius]) })
     })

@@ -90,6 +90,7 @@ pub fn stamp(sign: Sign) -> Stamp {
         Sign::OtherLimit(Control::Force) => stamp(MarkerShape::Square, ORANGE, 1.8, "limit of P"),
         Sign::OtherLimit(_) => stamp(MarkerShape::Diamond, ORANGE, 1.8, "limit of δ"),
         Sign::Limit | Sign::Event(_) => stamp(MarkerShape::TriangleDown, VERMILLION, 2.3, "limit point"),
+        Sign::Passing(_) => stamp(MarkerShape::Pentagon, BLACK, 2.4, "event without a limit point"),
         // The name used in the tables of the figures, which programs read.
         Sign::LastContact(_) => stamp(MarkerShape::Cross, VERMILLION, 2.8, "last contact"),
         Sign::LargestPull => stamp(MarkerShape::Triangle, BLACK, 2.4, "A, largest pull"),

@@ -382,6 +382,7 @@ impl Chart<'_> {
                 Sign::OtherLimit(_)
                     | Sign::Limit
                     | Sign::Event(_)
+                    | Sign::Passing(_)
                     | Sign::LastContact(_)
                     | Sign::LargestPull
                     | Sign::Farthest

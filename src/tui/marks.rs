@@ -91,8 +91,10 @@ pub fn letter(sign: Sign, theme: Theme) -> String {
     let one = |unicode: &str, ascii: &str| theme.glyph(unicode, ascii).to_owned();
     match sign {
         Sign::OtherLimit(_) | Sign::Limit => one("·", "."),
-        Sign::Event(number @ 1..=9) | Sign::LastContact(number @ 1..=9) => number.to_string(),
-        Sign::Event(_) => "v".to_owned(),
+        Sign::Event(number @ 1..=9) | Sign::Passing(number @ 1..=9) | Sign::LastContact(number @ 1..=9) => {
+            number.to_string()
+        }
+        Sign::Event(_) | Sign::Passing(_) => "v".to_owned(),
         Sign::LastContact(_) => one("×", "X"),
         Sign::Landing => one("○", "O"),
         Sign::Touch => "t".to_owned(),

@@ -55,6 +55,9 @@ pub struct Fineness {
 /// thousandth of half a wave.
 const OF_RINGS: Fineness = Fineness { tail: 1e-9, halvings: 4, of_holes: 9, loose: f64::INFINITY };
 
+/// So far beyond the beginning of a panel, whose width is 2, slopes are free of rounding and the same as there.
+const BESIDE: f64 = 1e-6;
+
 /// One equilibrium.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct SampledState {
@@ -234,13 +237,17 @@ impl Solution for Sampled {
 
     fn at(&self, place: Place) -> Local {
         let SampledPanel { span, series } = &*self.panels[place.panel];
-        let sum = |k: usize| chebyshev::sum(&series[k], place.x);
+        let sum = |k: usize, x: f64| chebyshev::sum(&series[k], x);
+        // Where contact begins within a zone, v is 0 and so are all slopes with respect to it, though those with respect to the radius
+        // are not: there they are taken a little further on.
+        let begins = self.touches.is_some() && span.stretch(place.x) <= 0.0;
+        let beside = if begins { place.x + BESIDE } else { place.x };
         Local {
             contact_radius: span.radius(place.x),
-            approach: sum(0),
-            force: sum(1),
-            slopes: [sum(2), sum(3)],
-            stretch: span.stretch(place.x),
+            approach: sum(0, place.x),
+            force: sum(1, place.x),
+            slopes: [sum(2, beside), sum(3, beside)],
+            stretch: span.stretch(beside),
         }
     }
 

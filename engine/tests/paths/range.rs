@@ -202,6 +202,23 @@ fn contact_begins_and_ends_where_the_closed_forms_say() {
     }
 }
 
+/// Where contact begins within a zone δ runs on smoothly: that is no limit point, and the slope is that of c/R − 4σ₀/(πE*).
+#[test]
+fn the_beginning_of_contact_within_a_zone_is_no_limit_point() {
+    for (strength, gamma) in [(0.02, 1e-3), (0.05, 2e-3), (0.2, 1e-3)] {
+        let of = equilibria(&SPHERE, gamma, strength, 0.5);
+        let solution = of.solution();
+        let touches = solution.touches();
+        assert!(!touches.is_empty(), "{strength}");
+        for place in touches {
+            let local = solution.at(*place);
+            let slope = local.slopes[0] / local.stretch;
+            let expected = local.contact_radius - 4.0 * strength / PI;
+            assert!((slope - expected).abs() < 1e-4 * expected.abs(), "{strength} {slope} {expected}");
+        }
+    }
+}
+
 #[test]
 fn figure_9_jumps_and_loses_as_the_prototype() {
     for (strength, losses, pull) in

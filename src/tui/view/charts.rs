@@ -125,12 +125,12 @@ fn select_event(model: &Model, chart: &mut Chart<'_>) {
     let log = model.log();
     let Some(number) = log.entries.get(model.event).and_then(|entry| entry.number) else { return };
     chart.selected = chart.figure.marks.iter().position(|mark| match mark.sign {
-        Sign::Event(other) | Sign::LastContact(other) => other == number,
+        Sign::Event(other) | Sign::Passing(other) | Sign::LastContact(other) => other == number,
         _ => false,
     });
     if let Some(at) = chart.selected
         && number > 9
-        && let sign @ Sign::Event(_) = chart.figure.marks[at].sign
+        && let sign @ (Sign::Event(_) | Sign::Passing(_)) = chart.figure.marks[at].sign
     {
         let style = style(sign, chart.theme).add_modifier(Modifier::REVERSED);
         chart

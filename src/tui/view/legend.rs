@@ -27,7 +27,7 @@ pub fn legend(figure: &Figure, bounds: &Bounds, theme: Theme) -> Vec<LegendRow> 
     for mark in figure.marks.iter().filter(|mark| bounds.share(mark.at).is_some()) {
         if let Some((rank, word)) = meaning(mark.sign) {
             let glyph = match mark.sign {
-                Sign::Event(1..=9) | Sign::LastContact(1..=9) => "1-9".to_owned(),
+                Sign::Event(1..=9) | Sign::Passing(1..=9) | Sign::LastContact(1..=9) => "1-9".to_owned(),
                 Sign::Snaps(_) => "0-9".to_owned(),
                 Sign::OfCrest(_) => "c1".to_owned(),
                 sign => letter(sign, theme),
@@ -45,8 +45,8 @@ fn meaning(sign: Sign) -> Option<(u8, &'static str)> {
     Some(match sign {
         Sign::Stray | Sign::Value | Sign::Letter(_) => return None,
         Sign::OtherLimit(_) | Sign::Limit => (9, "limit off the path"),
-        Sign::Event(1..=9) | Sign::LastContact(1..=9) => (4, "event"),
-        Sign::Event(_) => (7, "event from 10 on"),
+        Sign::Event(1..=9) | Sign::Passing(1..=9) | Sign::LastContact(1..=9) => (4, "event"),
+        Sign::Event(_) | Sign::Passing(_) => (7, "event from 10 on"),
         Sign::LastContact(_) => (7, "last contact"),
         Sign::LargestPull => (5, "largest pull"),
         Sign::Farthest => (5, "farthest"),
