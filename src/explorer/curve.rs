@@ -153,6 +153,24 @@ impl ProblemCurve {
     }
 }
 
+/// `points`, from outside inward, with the limit points at which their stability changes between them: each belongs to the part that
+/// it begins.
+fn parted(points: Vec<CurvePoint>, limits: &[CurvePoint]) -> Vec<CurvePoint> {
+    let mut all: Vec<CurvePoint> = Vec::with_capacity(points.len() + limits.len());
+    for point in points {
+        if let Some(before) = all.last().filter(|before| before.stable != point.stable) {
+            let (outer, inner) = (before.contact_radius, point.contact_radius);
+            let mut between =
+                limits.iter().filter(|at| inner < at.contact_radius && at.contact_radius < outer);
+            if let (Some(limit), None) = (between.next(), between.next()) {
+                all.push(CurvePoint { stable: point.stable, ..*limit });
+            }
+        }
+        all.push(point);
+    }
+    all
+}
+
 impl CurveData {
     /// Computes the curve of `preset` and what belongs to its control.
     pub fn compute(preset: &Preset, progress: &Staged<'_>) -> Result<Self, CaseError> {
@@ -173,15 +191,20 @@ impl CurveData {
         };
         curve.hold(control);
         let limits = curve.limit_points(control);
+        let at_limit = |limit: &Limit| {
+            let Limit { contact_radius, approach, force, .. } = *limit;
+            shown(&Sample {
+                contact_radius,
+                approach,
+                force,
+                slopes: Stability { approach: 0.0, force: 0.0 },
+            })
+        };
         let other_limits = SHOWN
             .into_iter()
             .filter(|other| *other != control)
             .flat_map(|other| curve.limit_points(other))
-            .map(|limit| {
-                let Limit { contact_radius, approach, force, .. } = limit;
-                let slopes = Stability { approach: 0.0, force: 0.0 };
-                (limit.control, shown(&Sample { contact_radius, approach, force, slopes }))
-            })
+            .map(|limit| (limit.control, at_limit(&limit)))
             .collect();
         progress.enter(CurveStage::Events);
         let told = |path: Result<Path, CaseError>| match path {
@@ -210,7 +233,8 @@ impl CurveData {
         };
         let outward = outward.map_or_else(Vec::new, |outward| outward.samples);
         let own = outward.len().saturating_sub(1);
-        let points = outward[..own].iter().chain(&curve.samples).map(shown).collect();
+        let points: Vec<CurvePoint> = outward[..own].iter().chain(&curve.samples).map(shown).collect();
+        let points = parted(points, &limits.iter().map(at_limit).collect::<Vec<_>>());
         let report = unloading.as_ref().ok().map(|path| PathReport::new(preset, &case, path));
         let setting = Arc::new(Setting::new(preset.clone(), curve.equilibrium.scales));
         let along = along.map(|path| path.map(Arc::new));

@@ -68,6 +68,16 @@ fn the_curve_has_its_pieces_its_limit_points_and_the_walk() {
         let figure = session.figure(view);
         let changes = curve.points.windows(2).filter(|pair| pair[0].stable != pair[1].stable).count();
         assert_eq!(count(&figure, Role::Stable) + count(&figure, Role::Unstable), changes + 1);
+        // They meet in the limit points themselves.
+        let limits = figure
+            .marks
+            .iter()
+            .filter(|mark| matches!(mark.sign, Sign::Limit | Sign::Event(_) | Sign::LastContact(_)));
+        for limit in limits {
+            let ends = figure.lines.iter().filter(|line| matches!(line.role, Role::Stable | Role::Unstable));
+            let mut ends = ends.flat_map(|line| [line.points[0], line.points[line.points.len() - 1]]);
+            assert!(ends.any(|(x, y)| (x - limit.at.0).abs() < 1e-12 && (y - limit.at.1).abs() < 1e-12));
+        }
         // Those on the path have the number of their event, each once; the others have none.
         let snaps = curve.report.as_ref().unwrap().events.len() - 1;
         assert!((1..=snaps).all(|number| signs(&figure, Sign::Event(number)) == 1));
@@ -140,7 +150,8 @@ fn overlays_are_drawn_where_they_exist() {
     let own = |s: f64| (0.999 * computed.case.end..1.001 * computed.case.start).contains(&s);
     let theory = &computed.base.theory;
     let count_own = theory.exact.iter().filter(|at| own(at[2])).count();
-    assert!(count_own >= computed.points.len(), "{count_own} of {}", computed.points.len());
+    let samples = computed.base.curve.samples.len();
+    assert!(count_own >= samples, "{count_own} of {samples}");
     for role in [Role::Exact, Role::Smooth] {
         let [x, y] = [figure.bounds.x[1], figure.bounds.y[1]];
         let line = figure.lines.iter().find(|line| line.role == role).unwrap();

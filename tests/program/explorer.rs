@@ -361,7 +361,7 @@ fn exports_hold_what_is_on_the_screen_and_never_replace_a_file_unasked() {
             } else {
                 let rows = csv::Reader::from_reader(text.as_bytes()).into_records().count();
                 let expected = match what {
-                    Export::Curve => session.model.curve.as_ref().unwrap().points.len(),
+                    Export::Curve => session.model.curve.as_ref().unwrap().base.curve.samples.len(),
                     Export::Walk => session.model.history.path().len(),
                     _ => 2,
                 };

@@ -312,7 +312,7 @@ fn views_follow_each_other_and_three_fit_on_a_wide_screen() {
     assert_eq!(text.matches("(t: force-radius)").count(), 1);
     // The loss of a jump is hatched, in ASCII as well.
     screen.app.theme = PLAIN;
-    let strokes = |screen: &Screen| screen.text(120, 40).matches('/').count();
+    let strokes = |screen: &Screen| screen.text(120, 40).matches(['/', '\\']).count();
     let before = strokes(&screen);
     screen.keys("TTT");
     assert!(strokes(&screen) > before + 5, "{}", screen.text(120, 40));
