@@ -56,8 +56,7 @@ pub(super) fn settings(asked: Option<&Path>) -> Result<crate::tui::UserSettings,
 }
 
 fn resumed(archive: &crate::explorer::archive::Archive, name: &str) -> Result<crate::tui::Opening, Failure> {
-    use crate::explorer::archive::ArchiveError;
-    let name = if name.is_empty() { archive.newest()?.ok_or(ArchiveError::Empty)? } else { name.to_owned() };
+    let name = if name.is_empty() { archive.to_resume()? } else { name.to_owned() };
     Ok(crate::tui::Opening::Resume(Box::new(archive.load(&name)?)))
 }
 

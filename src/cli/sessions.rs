@@ -69,7 +69,7 @@ pub fn run(command: &SessionsCommand) -> Result<ExitCode, Failure> {
 fn show(archive: &Archive, name: Option<&str>, format: Option<Format>) -> Result<(), Failure> {
     let name = match name {
         Some(name) => name.to_owned(),
-        None => archive.newest()?.ok_or(ArchiveError::Empty)?,
+        None => archive.to_resume()?,
     };
     output::print(match format {
         Some(Format::Json) => {

@@ -409,7 +409,10 @@ fn sessions_are_listed_shown_and_deleted() {
     let held = home.archive().load("wavy-sphere-1").unwrap();
     let (status, _, said) = home.run(&["sessions", "delete", "wavy-sphere-1", "--yes"]);
     assert!(status == 2 && said.contains("is running in another pulloff"), "{said}");
-    drop(held);
+    let other = home.archive().load("wavy-sphere-2").unwrap();
+    let (status, _, said) = home.run(&["--resume"]);
+    assert!(status == 2 && said.contains(" is running in another pulloff"), "{said}");
+    drop((held, other));
     assert_eq!(home.run(&["sessions", "delete", "wavy-sphere-1", "--yes"]).0, 0);
     let (status, _, said) = home.run(&["sessions", "show", "wavy-sphere-1"]);
     assert!(status == 2 && said.contains("did you mean wavy-sphere-2?"), "{said}");

@@ -63,7 +63,7 @@ pub fn fit_own(preset: &Preset, options: &Options, progress: &dyn Progress) -> R
 /// That x of a fit that does not describe the points may be a position, and whether it is described if it is.
 fn of_reading(
     preset: &Preset,
-    OtherReading { x, columns }: &OtherReading,
+    OtherReading { x, meanings: [read_as, other], columns }: &OtherReading,
     (options, own): (&Options, &Fit),
     progress: &dyn Progress,
 ) -> Reason {
@@ -83,8 +83,7 @@ fn of_reading(
         None => "As that, there is no fit".to_owned(),
     };
     let sentence = format!(
-        "{x} is read as the approach of the bodies and may be the position of the device: --columns or data.columns {columns}. \
-         {outcome}"
+        "{x} is read as the {read_as} and may be the {other}: --columns or data.columns {columns}. {outcome}"
     );
     Reason { kind: "columns", sentence, value: found.map(|found| found.chi_squared) }
 }

@@ -310,11 +310,18 @@ fn of_header(
     wanted
 }
 
-/// The column of x in words, if it is taken as an approach though nothing says that it is no position.
+/// The column of x in words, if it is taken as an approach though nothing says that it is no position, or the reverse.
 pub(super) fn open(spec: &ColumnSpec, header: Option<&Header>, wanted: &[WantedColumn]) -> Option<String> {
-    let has_position = wanted.iter().any(|column| column.role == ColumnRole::Position);
-    let x = wanted.iter().find(|column| column.role == ColumnRole::Approach)?;
-    if !spec.0.is_empty() || has_position {
+    let [approach, position, deflection] =
+        [ColumnRole::Approach, ColumnRole::Position, ColumnRole::Deflection]
+            .map(|role| wanted.iter().find(|column| column.role == role));
+    let x = match (approach, position) {
+        (Some(x), None) => x,
+        // A deflection goes with the position of the device.
+        (None, Some(x)) if deflection.is_none() => x,
+        _ => return None,
+    };
+    if !spec.0.is_empty() {
         return None;
     }
     let Some(header) = header else { return Some("x, which has no heading,".to_owned()) };

@@ -25,8 +25,8 @@ pub(super) struct ColumnName {
     pub is_open: bool,
 }
 
-/// Names of an approach that are as often those of the position of a device.
-const OPEN: [&str; 3] = ["displacement", "disp", "distance"];
+/// Names of an approach that are as often those of the position of a device, and the reverse.
+const OPEN: [&str; 4] = ["displacement", "disp", "distance", "z"];
 
 /// The roles with the names that headers use for them, letters and digits only, in lower case, split by spaces. Names of
 /// rank 1 may mean something else when others are present; names of rank 2 are what was asked for, not what was

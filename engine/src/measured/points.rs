@@ -113,7 +113,7 @@ pub enum PointsError {
     /// Units in a problem without units.
     #[error(
         "{}the {role} has a unit, {unit}, and the problem is in reduced units, where columns are pure \
-         numbers: remove the unit, or set units = \"SI\"",
+         numbers: remove the unit, or take a preset with units = \"SI\", such as lens",
         header.map_or_else(String::new, |line| format!("line {line}: "))
     )]
     Reduced {

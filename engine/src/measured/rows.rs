@@ -59,7 +59,7 @@ pub struct Measured {
     pub used: Vec<UsedColumn>,
     /// Whether the user says which columns they are.
     pub is_said: bool,
-    /// The column of x, in words, if it is read as an approach and its heading may as well mean a position.
+    /// The column of x, in words, if it is read as an approach and its heading may as well mean a position, or the reverse.
     pub open: Option<String>,
     /// How many rows have no number in a column that is used; they are left out.
     pub skipped: usize,

@@ -140,10 +140,10 @@ impl Preset {
         let Some(source) = &self.data.source else { return Ok(Vec::new()) };
         let measured = source.measured(&self.data.columns)?;
         let mut notes = measured.notes.clone();
-        notes.extend(self.other_reading()?.map(|OtherReading { x, columns }| {
+        notes.extend(self.other_reading()?.map(|OtherReading { x, meanings: [own, other], columns }| {
             format!(
-                "{x} is read as the approach of the bodies: if it is the position of the device, at the far end of the \
-                 spring, set --columns or data.columns to {columns}"
+                "{x} is read as the {own}: if it is the {other}, set --columns or data.columns to {columns}; the device is at \
+                 the far end of the spring"
             )
         }));
         notes.extend(self.note_of_units());
@@ -178,10 +178,17 @@ impl Preset {
             return Ok(None);
         };
         let measured = source.measured(&self.data.columns)?;
-        let role = |role| if role == ColumnRole::Approach { ColumnRole::Position } else { role };
+        let role = |role| match role {
+            ColumnRole::Approach => ColumnRole::Position,
+            ColumnRole::Position => ColumnRole::Approach,
+            role => role,
+        };
+        let is_position = measured.used.iter().any(|used| used.role == ColumnRole::Position);
+        let meanings = ["approach of the bodies", "position of the device"];
+        let meanings = if is_position { [meanings[1], meanings[0]] } else { meanings };
         let columns = measured.used.iter().map(|used| format!("{}={}", role(used.role).word(), used.number));
         let columns = columns.collect::<Vec<_>>().join(",");
-        Ok(measured.open.clone().map(|x| OtherReading { x, columns }))
+        Ok(measured.open.clone().map(|x| OtherReading { x, meanings, columns }))
     }
 
     /// The branches of its measured curve; `None` without one.
@@ -198,7 +205,9 @@ impl Preset {
 pub(crate) struct OtherReading {
     /// The column, in words.
     pub(crate) x: String,
-    /// The value of `data.columns` that reads it as a position.
+    /// What it is read as, and what else it may be.
+    pub(crate) meanings: [&'static str; 2],
+    /// The value of `data.columns` that reads it as that.
     pub(crate) columns: String,
 }
 
@@ -303,6 +312,10 @@ mod tests {
         assert!(open.contains("to position=1,force=2,segment=3"), "{open}");
         assert!(open.contains("no unit is given for force, read in N"), "{open}");
         assert!(open.contains("as in \"approach=1,force=2 [mN],segment=3\""), "{open}");
+        let open = notes("z [um], force [uN], segment", spring, si);
+        let said = "x, headed \"z\", is read as the position of the device: if it is the approach of the bodies, set --columns or data.columns to \
+                    approach=1,force=2,segment=3";
+        assert!(open.contains(said), "{open}");
         for (head, control, units) in [
             ("Displacement [um], force [uN], segment", "'force'", si),
             ("indentation [um], force [uN], segment", spring, si),

@@ -157,6 +157,16 @@ impl Archive {
         Ok(self.list()?.into_iter().map(|entry| entry.name).find(|name| !self.is_running(name)))
     }
 
+    /// The name of the session to resume: the newest one that no program is writing.
+    /// Errors: There is none, or all are running.
+    pub fn to_resume(&self) -> Result<String, ArchiveError> {
+        let of_running = || {
+            let newest = self.list()?.into_iter().next();
+            Err(newest.map_or(ArchiveError::Empty, |entry| ArchiveError::Running { name: entry.name }))
+        };
+        self.newest()?.map_or_else(of_running, Ok)
+    }
+
     /// Reads a session and holds it: nobody else can hold it meanwhile.
     /// Errors: It is not there, another program holds it, or it cannot be read; its file is unchanged.
     pub fn load(&self, name: &str) -> Result<HeldSession, ArchiveError> {
