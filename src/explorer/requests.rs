@@ -1,5 +1,6 @@
 //! Requests that the model makes to the worker for several commands: a curve, the end of a walk, work on files.
 
+use super::command::Id;
 use super::effect::{Effect, Wish};
 use super::job::Job;
 use super::model::{Awaits, Level, Model, Walking};
@@ -112,6 +113,10 @@ fn brought_by_shape(before: &Preset, now: &Preset) -> Option<String> {
     const SHAPE: &str = "gap.shape";
     if before.get(SHAPE) == now.get(SHAPE) {
         return None;
+    }
+    if now.get("gap.file").is_some_and(|file| file.to_string().contains("shipped:")) {
+        let choose = Id::Edit.named();
+        return Some(format!("a shipped profile stands in for yours: {choose} on the value file chooses it"));
     }
     let is_new = |row: &Row| {
         let is_value = row.table() == Some("gap") && row.key != SHAPE && row.kind.is_number();
