@@ -25,7 +25,7 @@ use super::update::places::to_largest_pull;
 use super::update::selection::{arrow, cancel, next_panel};
 use super::update::travel::travel;
 use super::update::values::turn;
-use super::update::walk::{next_event, restart, run_or_stop, scale_length, scale_pace, walk};
+use super::update::walk::{next_event, restart, run_or_stop, scale_length, scale_pace, turn_round, walk};
 use super::view::ScreenPanel;
 use super::walk::Action;
 use super::{look, reach};

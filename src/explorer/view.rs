@@ -96,9 +96,9 @@ views! {
     /// The potential of bodies and device over s, with the control held at the walker's value.
     Energy "energy" "the potential over s, the control held" [RadiusApproach, ForceApproach, Pressure];
     /// The quasi-static path with what its jumps dissipate, Fig. 10.
-    Unloading "unloading" "the path down with the energy its jumps lose" [ForceApproach, Pressure, Energy];
+    Unloading "unloading" "the retraction with the energy its jumps lose" [ForceApproach, Pressure, Energy];
     /// The whole loop of loading and unloading with its losses, P over δ.
-    Cycle "cycle" "the whole loop of loading and unloading" [ContactMap, ForceApproach, Pressure];
+    Cycle "cycle" "the whole loop of loading and unloading, its hysteresis" [ContactMap, ForceApproach, Pressure];
     /// The contacts along the course of the control.
     ContactMap "contact-map" "where the bodies touch, over the whole loop"
         [Cycle, ForceApproach, ForceRadius];

@@ -30,8 +30,8 @@ macro_rules! each_command {
             "move to A, the largest pull of the path; or to B, the farthest state, to a contact radius, or to an event by number, as a digit does"
             { words: "largest pull peak", run: to_largest_pull,
             takes: takes("A, B, event N, or a contact radius", destination).offering(|_| words(["A", "B", "event"])) }
-        Reverse "reverse" "b" "back" turns InOrder Yes "turn round: steps and events then go the other way"
-            { words: "turn direction", look: |model| model.inward = !model.inward }
+        Reverse "reverse" "b" "turn" turns InOrder Yes "turn round: steps and events then go the other way"
+            { words: "turn direction back", look: turn_round }
         Halve "halve-step" "[" "half step" always InOrder Yes "halve the step length" { look: |model| scale_length(model, 0.5) }
         Double "double-step" "]" "double step" always InOrder Yes "double the step length"
             { look: |model| scale_length(model, 2.0) }
@@ -43,7 +43,7 @@ macro_rules! each_command {
             takes: takes("number", |rest| travelled(rest, Id::Redo)) }
         Branches "branches" "B" "branches" branches InOrder Screen "the branches of the walk: how each ended, and a way back"
             { takes: Takes::NOTHING.listing(branches_of) }
-        Restart "restart" "Home" "start" walker_or_no_curve Curve Yes "start again" { words: "reset beginning", run: restart }
+        Restart "restart" "Home" "start" walker_or_no_curve Curve Yes "start again" { words: "reset beginning again", run: restart }
         Control "control" "c" "control" always Curve Needs("a control")
             "what the device prescribes: displacement, force, or stiffness" { words: "device",
             takes: takes("control", |rest| rest.assigned("a control", "path.control")).offering(controls) }
@@ -98,7 +98,7 @@ macro_rules! each_command {
         ChooseView "view" "" "charts" always Nothing Screen "any chart by its name; those with nothing to show say why"
             { takes: takes("chart", view).listing(views) }
         Study "study" "" "study" curve Nothing Needs("a quantity") "a quantity over the range of the selected value, or of the one named"
-            { words: "sweep dependence parameter", takes: takes("quantity [KEY[=[log:]FROM..TO]]", quantity).listing(quantities).going_on(quantities) }
+            { words: "sweep dependence parameter quasi-static limit", takes: takes("quantity [KEY[=[log:]FROM..TO]]", quantity).listing(quantities).going_on(quantities) }
         ZoomIn "zoom-in" "+" "closer" curve Nothing Screen "zoom in, about the cross-hair or the walker"
             { look: |model| look::zoom(model, model.view, true, model.cross.unwrap_or(look::MIDDLE)) }
         ZoomOut "zoom-out" "-" "wider" curve Nothing Screen "zoom out"
@@ -107,7 +107,7 @@ macro_rules! each_command {
         CrossHair "cross-hair" "i" "cross-hair" curve Nothing Screen "a cross-hair that reads the chart; arrows move it"
             { words: "cursor read", look: look::cross_hair }
         Map "map" "" "map" curve Nothing Screen
-            "where snaps happen over the selected value; again: the map of it and the adhesion" { words: "phase diagram threshold onset", look: look::map,
+            "where snaps happen over the selected value; again: the map of it and the adhesion" { words: "phase diagram threshold onset region", look: look::map,
             takes: takes("KEY[=[log:]FROM..TO] [another, control, approach or force]", axes).going_on(axes_of) }
         Axes "axes" "a" "axes" always Nothing Screen "axes in P/Pc, delta, s/lambda, or raw values" { words: "axis units raw", look: look::axes }
         Overlays "overlays" "y" "theory" curve Nothing Screen
@@ -126,7 +126,7 @@ macro_rules! each_command {
         Save "save" "s" "save" always Nothing Yes "save the preset" { words: "w write", run: save_back,
             takes: takes("replace, or a name", saved).offering(|_| vec![Offer::new("replace", "overwrite the file even if it changed on disk")]) }
         SaveAs "save-as" "S" "save as" always Nothing Needs("a name") "save the preset under another name"
-            { takes: takes("name", saved_as).going_on(names) }
+            { words: "rename copy", takes: takes("name", saved_as).going_on(names) }
         Export "export" "e" "export" always Nothing Needs("a document and a file")
             "write curve, walk, events, pull or study as CSV or JSON, a figure, the session as a script, the screen as text"
             { words: "figure plot picture svg pdf csv json image script replay", takes: takes("WHAT FILE", exported).going_on(documents) }

@@ -341,6 +341,18 @@ pub(in crate::explorer) fn scale_length(model: &mut Model, by: f64) {
     model.length = (model.length * by).clamp(*LENGTHS.start(), *LENGTHS.end());
 }
 
+/// Turns the walk round; no state is made.
+pub(in crate::explorer) fn turn_round(model: &mut Model) {
+    model.inward = !model.inward;
+    // What is said of a stable state has the direction; of an unstable one, it says where the edge would run.
+    if model.walker().zip(model.control()).is_none_or(|(node, control)| node.stability.under(control)) {
+        return;
+    }
+    let way = if model.inward { "inward" } else { "outward" };
+    let (step, undo) = (Id::Step.named(), Id::Undo.named());
+    model.tell(Level::Info, format!("turned round: {step} goes {way} now; {undo} takes steps back"));
+}
+
 /// Ends the walk under way, without waiting for what it might still make.
 pub(super) fn abandon(model: &mut Model) -> Vec<Effect> {
     let effects = stop_walk(model);
