@@ -1,7 +1,7 @@
 //! Words and cells: what a line says besides its numbers, and what a cell is.
 
 use super::names::named;
-use super::role::{Segment, unit_named};
+use super::role::{ColumnRole, Segment, unit_named};
 use crate::cells::{ColumnHead, Separator, heads};
 use crate::units::Unit;
 
@@ -94,8 +94,13 @@ pub(super) fn row_under(above: &[Words], text: &str) -> Option<(Separator, usize
     let separator = Separator::of(names.text);
     let heads = heads(names.text, separator, &super::role::dimensions());
     let cells = separator.cells(text);
-    let is =
-        heads.len() == cells.len() && count_known(&heads) >= 2 && cells.iter().any(|cell| is_number(cell));
+    let has = |is: &dyn Fn(ColumnRole) -> bool| {
+        heads.iter().any(|(name, _)| named(name).is_some_and(|named| is(named.role)))
+    };
+    let is = heads.len() == cells.len()
+        && has(&ColumnRole::is_force)
+        && has(&ColumnRole::is_way)
+        && cells.iter().any(|cell| is_number(cell));
     (is && cells.iter().skip(1).all(|cell| is_number(cell) || is_gap(cell) || Segment::of(cell).is_some()))
         .then_some((separator, cells.len()))
 }

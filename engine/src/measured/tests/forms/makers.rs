@@ -163,6 +163,8 @@ pub(super) fn of_indenters() -> Vec<FileForm> {
         let all = if several { segment(&half(false)) + &segment(&half(true)) } else { segment(&rows()) };
         (head.to_owned() + &all).replace('.', &mark.to_string())
     };
+    // Written without the tab at the end of each line, and with whole numbers above the rows.
+    let bare = lvm(',', false).replace("0,0E+0", "0").replace("\t\n", "\n");
     vec![
         form("Hysitron", western(&hysitron("Depth (nm)\tLoad (µN)\tTime (s)\tDepth (V)\tLoad (V)")))
             .says("Windows-1252"),
@@ -170,6 +172,7 @@ pub(super) fn of_indenters() -> Vec<FileForm> {
         form("Chiaro", western(&chiaro)).spring(0.018).tip(27.5e-6),
         form("Chiaro, in UTF-8", chiaro).spring(0.018).tip(27.5e-6),
         form("LabVIEW, decimal commas", lvm(',', false)).position().says("decimals are written with a comma"),
+        form("LabVIEW, lines without a last tab", bare).position().says("decimals are written with a comma"),
         form("LabVIEW, decimal points", lvm('.', false)).position(),
         form("LabVIEW, a heading for each segment", lvm(',', true)).position().says("2 tables"),
     ]
