@@ -475,6 +475,17 @@ fn the_barrier_appears_shrinks_and_is_gone_at_the_limit_point() {
     assert!(heights.len() > 3 && heights.windows(2).all(|pair| pair[1] < pair[0]), "{heights:?}");
 }
 
+/// The start is an end of the curve: whether rounding puts its radius within or beyond, it is a minimum with a barrier.
+#[test]
+fn the_energy_at_the_start_has_its_barrier_in_all_units() {
+    for preset in ["fig-9", "fig-9-si"] {
+        let session = Session::new(preset);
+        let figure = session.figure(View::Energy);
+        let found = [Sign::Minimum, Sign::Maximum, Sign::Barrier].map(|sign| signs(&figure, sign));
+        assert_eq!(found, [2, 1, 1], "{preset} {:?}", figure.marks);
+    }
+}
+
 #[test]
 fn differences_are_those_of_the_curves_at_equal_radius_and_at_equal_approach() {
     let mut session = Session::new("wavy-sphere");

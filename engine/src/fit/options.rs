@@ -6,7 +6,7 @@ use crate::measured::{Abscissa, BranchError};
 use crate::preset::called::key_called;
 use crate::preset::data::{BASELINE, OFFSET, TILT};
 use crate::preset::invalid::{Invalid, of_unknown};
-use crate::preset::schema::{CHOOSERS, Kind, RANGE_KEYS, Row};
+use crate::preset::schema::{CHOOSERS, Kind, LIQUID_KEYS, RANGE_KEYS, Row};
 use crate::preset::{Preset, Value, edge};
 use crate::progress::Stopped;
 use crate::text::{closest_key, greek, quote};
@@ -180,6 +180,11 @@ pub fn target(preset: &Preset, abscissa: Abscissa, name: &str) -> Result<Target,
         refused(why.to_owned())
     };
     let row = preset.row(&key).ok_or_else(unfit)?;
+    if LIQUID_KEYS.iter().any(|of_liquid| row.key == *of_liquid) {
+        let why = "is held: of a liquid bridge no values are fitted. With material.adhesion = \"dugdale\" a fit finds the strength and \
+                   the range of such an adhesion";
+        return Err(refused(why.to_owned()));
+    }
     let others = [
         MODULUS,
         ADHESION,

@@ -117,7 +117,12 @@ impl Landscape {
         let monotone = curve.monotone(control);
         let held = HeldControl { equilibrium, control, value };
         let crossings = held.crossings(curve, &monotone);
-        let found = crossings.into_iter();
+        // The present state may be an end of the curve, and beyond it by rounding.
+        let within = |s: f64| {
+            let inside = s.clamp(from, to);
+            if (s - inside).abs() <= ROUNDING * to { inside } else { s }
+        };
+        let found = crossings.into_iter().map(|(s, stable)| (within(s), stable));
         let mut found: Vec<(f64, bool)> = found.filter(|(s, _)| (from..=to).contains(s)).collect();
         found.sort_by(|a, b| a.0.total_cmp(&b.0));
         grid.extend(found.iter().map(|(s, _)| *s));
@@ -157,6 +162,9 @@ impl Landscape {
         Some(top.potential - here.potential)
     }
 }
+
+/// Radii that differ by this share are the same.
+const ROUNDING: f64 = 1e-12;
 
 /// A rise of the potential below this share of its range is rounding.
 const RISE: f64 = 1e-6;
