@@ -135,8 +135,15 @@ pub struct Decimals {
     marks: [Option<usize>; 2],
     /// The first number whose comma may separate thousands, with its line.
     grouped: Option<(usize, String)>,
-    /// Whether a comma of another number marks decimals for sure.
+    /// Whether another number would not be written so with commas between thousands.
     is_sure: bool,
+}
+
+/// Whether a number would not be written so with commas between thousands: `0,95` or `1234,5`.
+pub fn rules_out_thousands(cell: &str) -> bool {
+    let cell = bare(cell);
+    let is_number = || cell.replace(',', ".").replace('\u{2212}', "-").parse::<f64>().is_ok();
+    cell.matches(',').count() == 1 && is_number() && !is_grouped(cell)
 }
 
 /// Whether the comma of a number may separate thousands: `1,234` and `-643,950`, but not `0,950` or `1,2345`.
@@ -181,7 +188,7 @@ impl Decimals {
         if comma && is_grouped(text) {
             self.grouped.get_or_insert_with(|| (line, quote(text)));
         }
-        self.is_sure |= comma && !is_grouped(text);
+        self.is_sure |= rules_out_thousands(text);
         let mut plain = Cow::Borrowed(text);
         if comma || text.contains(['\u{2212}', 'd', 'D']) {
             // 1.5D-05 is how Fortran writes 1.5e-05.

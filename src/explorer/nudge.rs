@@ -126,7 +126,7 @@ fn shifted(preset: &Preset, key: &str, value: Option<Value>, share: f64) -> Resu
     };
     let (range, found) = match key {
         data::OFFSET => (branches.ranges[0], 0.0),
-        _ => (branches.ranges[1], branches.baseline.unwrap_or(0.0)),
+        _ => (branches.ranges[1], branches.baseline.or(preset.data.tare).unwrap_or(0.0)),
     };
     Ok(value.and_then(|value| value.as_number()).unwrap_or(found) + 0.1 * share * range)
 }

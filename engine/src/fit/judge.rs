@@ -121,9 +121,8 @@ pub(super) fn reasons(evidence: Evidence, preset: &Preset, clipped: Option<Clipp
 
 /// Whether the file shows no rows apart, and nothing else says that there are none or what their force is.
 fn is_apart_unknown(branches: &Branches, preset: &Preset) -> bool {
-    let is_said = branches.baseline.is_some()
-        || preset.data.known_baseline().is_some()
-        || !preset.data.free_part.is_empty();
+    let is_said =
+        branches.baseline.is_some() || preset.data.baseline.is_some() || !preset.data.free_part.is_empty();
     !is_said && branches.abscissa != Abscissa::Radius
 }
 

@@ -5,7 +5,7 @@ use super::pulled::is_pulled;
 use super::uncertain::{uncertain, written};
 use crate::elementary::{log10, pow};
 use crate::measured::{Instrument, Segment};
-use crate::preset::data::{BASELINE, OFFSET, TILT};
+use crate::preset::data::{BASELINE, OFFSET, TARE, TILT};
 use crate::preset::{BasisSpec, Preset, Value, edge};
 use crate::problem::Start;
 use crate::units::Quantity;
@@ -62,6 +62,10 @@ pub(super) fn laid(
                 (edge::CLOSING_ADHESION, closing.filter(|closing| *closing <= opening).map(Value::from))
             }
             Target::Offset => (OFFSET, Some(instrument.offset.into())),
+            // A baseline that no rows show is known no better by the next fit, which is free to change it.
+            Target::Baseline if !problem.data.iter().any(|datum| datum.free) => {
+                (TARE, Some(instrument.baseline.into()))
+            }
             Target::Baseline => (BASELINE, Some(instrument.baseline.into())),
             Target::Tilt => (TILT, Some(instrument.tilt.into())),
         };
@@ -81,18 +85,13 @@ pub(super) fn laid(
 
 /// What is known with an error, as it is written in a preset.
 fn known_before(preset: &Preset, problem: &FitProblem) -> String {
-    // What was known before stays so: the next fit has the same points, which must count once. That holds for a baseline that
-    // no rows show, too, although nobody has written what is known of it.
+    // What was known before stays so: the next fit has the same points, which must count once.
     let known = uncertain(preset, problem.abscissa, &preset.data.uncertain).unwrap_or_default();
-    let is_known = |parameter: &FreeParameter| {
-        parameter.target == Target::Baseline
-            || known.iter().any(|known| known.target.key() == parameter.key())
-    };
     let known: Vec<String> = problem
         .priors
         .iter()
         .map(|prior| (&problem.parameters[prior.parameter], prior))
-        .filter(|(parameter, _)| is_known(parameter))
+        .filter(|(parameter, _)| known.iter().any(|known| known.target.key() == parameter.key()))
         .map(|(parameter, prior)| written(parameter, prior))
         .collect();
     known.join(",")

@@ -270,8 +270,8 @@ fn sentence([one, two]: [&str; 2], verdicts: [Option<Verdict>; 2], difference: f
             "{one} is nearer to the points than {two}, whose AIC is {by} by {size}, but it does not describe them"
         ),
         (false, true) if is_refuted => format!(
-            "only {one} describes the points; the AIC of {two} is {by} by {size}, and {APART} would be needed to tell \
-             them apart by it"
+            "{one} describes the points and {two} does not; the AIC of {two} is {by} by {size}, and {APART} would be \
+             needed to tell them apart by it"
         ),
         (false, _) => format!(
             "the points do not distinguish {one} from {two}, whose AIC is {by} by {size}; {APART} would be needed"
@@ -289,7 +289,7 @@ mod tests {
         let of = |verdict, difference| sentence(["a", "b"], [Some(Describes), Some(verdict)], difference);
         assert!(
             of(DoesNotDescribe, -3.0)
-                .starts_with("only a describes the points; the AIC of b is smaller by 3")
+                .starts_with("a describes the points and b does not; the AIC of b is smaller by 3")
         );
         assert!(of(NotDetermined, 3.0).starts_with("the points do not distinguish a from b"));
         assert!(of(DoesNotDescribe, 11.0).starts_with("the points favour a over b"));

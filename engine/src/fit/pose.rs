@@ -11,7 +11,7 @@ use super::uncertain::{Uncertain, uncertain};
 use crate::gap::Gap;
 use crate::measured::branches::{MeasuredPoint, median};
 use crate::measured::{Abscissa, Branches, Instrument, Segment};
-use crate::preset::data::{DataSpec, UNCERTAIN};
+use crate::preset::data::DataSpec;
 use crate::preset::edge::{CLOSING_ADHESION, RATE};
 use crate::preset::{BasisSpec, Preset, Value};
 use crate::problem::Start;
@@ -321,8 +321,7 @@ fn instrument(
             let unless = if given.baseline.is_some() { ": the value given is not used" } else { "" };
             (!is_free).then(|| format!("since there is a free part{unless}"))
         }
-        None if is_known => Some(format!("as {UNCERTAIN} says how well it is known")),
-        None if is_free || is_asked && given.baseline.is_none() => {
+        None if !is_known && (is_free || is_asked && given.baseline.is_none()) => {
             let off = said(&preset.units, Quantity::Force, branches.tare());
             Some(format!("known to within {off} beforehand, since there is no free part"))
         }

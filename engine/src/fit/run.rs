@@ -423,20 +423,20 @@ fn warned(
     warnings.extend(unmoved(fitted));
     warnings.extend(of_unclear(branches, fitted));
     warnings.extend(of_hidden(branches, preset));
-    warnings.extend(of_wide_tare(evidence.problem, branches, preset));
+    warnings.extend(of_wide_tare(evidence.problem, branches));
     warnings.extend(branches.swapped().into_iter().chain(branches.unread()));
     warnings
 }
 
 /// That a tare of the force larger than it is assumed to be may come of another minimum, which is so on waves.
-fn of_wide_tare(problem: &FitProblem, branches: &Branches, preset: &Preset) -> Option<String> {
+fn of_wide_tare(problem: &FitProblem, branches: &Branches) -> Option<String> {
     /// The factor from which it is larger, and not rounded.
     const WIDER: f64 = 1.01;
     let is_of = |prior: &&Prior| problem.parameters[prior.parameter].target == Target::Baseline;
     let has_waves = problem.preset.gap.feature_length().is_some();
     let prior = problem.priors.iter().find(is_of).filter(|_| has_waves && branches.baseline.is_none())?;
     let [_, sigma] = problem.parameters[prior.parameter].given(prior);
-    (preset.data.known_baseline().is_none() && sigma > WIDER * branches.tare()).then(|| {
+    (problem.preset.data.baseline.is_none() && sigma > WIDER * branches.tare()).then(|| {
         "the values hold only if the zero of the force is as far off as data.baseline says: on waves another minimum may be the \
          right one. Give data.baseline if it is known"
             .to_owned()

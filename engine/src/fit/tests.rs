@@ -9,7 +9,7 @@ use super::*;
 use crate::gap::shapes::split_mix::SplitMix64;
 use crate::measured::Asked;
 use crate::measured::{Abscissa, Instrument, Origin, Points, Segment};
-use crate::preset::data::{BASELINE, OFFSET};
+use crate::preset::data::{BASELINE, DataSpec, OFFSET};
 use crate::preset::{Preset, read};
 use crate::progress::{Unwatched, until};
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
@@ -464,13 +464,18 @@ fn a_tare_that_no_rows_show_is_found_or_in_the_errors() {
             if seed == 0 {
                 // Its preset lies on the points, and a second fit counts what was known of the tare once.
                 let found = of(BASELINE);
-                assert_eq!(fit.preset.data.baseline, Some(found.value), "{:?}", fit.preset.data);
-                assert_eq!(fit.preset.data.known_baseline(), None);
+                let DataSpec { baseline, tare, .. } = fit.preset.data;
+                assert_eq!((baseline, tare), (None, Some(found.value)));
                 let again = run(&fit.preset, &points, free);
                 let same = again.parameters.iter().find(|fitted| fitted.key == BASELINE).unwrap();
                 let by = (same.value - found.value).abs() / found.standard_error.unwrap();
                 assert!(by < 0.01, "{by}: {found:?} {same:?}");
-                assert_eq!(again.preset.data.uncertain, fit.preset.data.uncertain);
+                // One that is given comes before it, and is held.
+                let mut given = fit.preset.clone();
+                given.data.baseline = Some(TARE);
+                let held = run(&given, &points, free);
+                assert!(held.parameters.iter().all(|fitted| fitted.key != BASELINE));
+                assert_eq!(held.preset.data.baseline, Some(TARE));
             }
         }
         assert!((0.3..2.0).contains(&squares) && refused <= 1, "{has_radii} {free:?}: {squares} {refused}");

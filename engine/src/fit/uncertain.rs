@@ -8,11 +8,12 @@ use super::options::{FitError, letter, target};
 use super::prior::Prior;
 use super::problem::{FitProblem, FreeParameter, Target};
 use crate::measured::Abscissa;
-use crate::preset::data::BETWEEN;
 use crate::preset::{Preset, Value};
 use crate::text::quote;
 use serde::Serialize;
 
+/// The signs between a value and its error; the first is written.
+const BETWEEN: [&str; 2] = ["+-", "±"];
 /// The largest error in units of the value: a larger one says nothing about what must be positive.
 const MOST: f64 = 1.0;
 

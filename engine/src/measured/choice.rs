@@ -46,6 +46,12 @@ fn candidates(header: &Header) -> Vec<NamedColumn> {
     header.heads.iter().enumerate().filter_map(of).collect()
 }
 
+/// The units that a header gives to columns whose names are known, each with the place of its column.
+pub(super) fn units_of(header: &Header) -> Vec<(usize, Unit)> {
+    let known = candidates(header).into_iter();
+    known.filter_map(|column| Some((column.at, column.unit.ok().flatten()?))).collect()
+}
+
 /// The columns of approach and retraction, where they stand side by side: each with an x and a force, in the same
 /// units. A column that belongs to neither is used for both.
 pub(super) fn sides(header: &Header) -> Option<[Vec<WantedColumn>; 2]> {

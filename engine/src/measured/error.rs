@@ -48,7 +48,7 @@ pub enum CurveFault {
     Decimals(CellFault),
     /// An unknown branch.
     #[error(
-        "column {number}: the segment \"{text}\" is not known: expected approach or retraction, or False or True"
+        "column {number}: the segment \"{text}\" is not known: expected approach or retraction, False or True, 0 or 1"
     )]
     Segment {
         /// The column, from 1.

@@ -11,7 +11,7 @@
 //! the file states about its instrument. Rows without a number in a column that is used are left out and counted. The
 //! first faults are reported with line and column; a file with faults yields no curve.
 
-use super::choice::{self, WantedColumn, in_si, open, sides};
+use super::choice::{self, WantedColumn, in_si, open, sides, units_of};
 use super::error::{CurveFault, CurveReadError, ROW_RANGE};
 use super::header::{Header, headed, same, segment};
 use super::lines::{Outline, TextTable};
@@ -90,7 +90,8 @@ pub fn parse(bytes: &[u8], spec: &ColumnSpec) -> Result<Measured, CurveReadError
     pieces.read(spec, settings.is_si, &mut measured, &mut state)?;
     state.judge_numbers();
     let lines = pieces.outline.faults.iter().map(|(line, fault)| (*line, fault.clone().into()));
-    let doubtful = state.decimals.doubtful().map(|(line, fault)| (line, CurveFault::Decimals(fault)));
+    let doubtful = state.decimals.doubtful().filter(|_| !pieces.rules_out_thousands());
+    let doubtful = doubtful.map(|(line, fault)| (line, CurveFault::Decimals(fault)));
     let faults = std::mem::take(&mut state.faults).and(lines.chain(doubtful));
     if faults.total > 0 {
         return Err(CurveReadError::Faults(faults));
@@ -241,6 +242,13 @@ impl<'a> Pieces<'a> {
         Some(table.separator.cells(table.rows.get(row)?.1))
     }
 
+    /// Whether a number in any column, used or not, would not be written so with commas between thousands.
+    fn rules_out_thousands(&self) -> bool {
+        let all = self.chosen();
+        let rows = all.iter().flat_map(|table| table.rows.iter().map(|(_, row)| table.separator.cells(row)));
+        rows.flatten().any(cells::rules_out_thousands)
+    }
+
     /// Reads the rows of these tables, each of a branch, into both sides; the second has no columns where the branches do
     /// not stand side by side.
     fn read_rows(
@@ -308,21 +316,16 @@ impl<'a> Pieces<'a> {
         if is_si {
             in_si(&mut wanted);
         }
+        let units = header.map_or_else(Vec::new, units_of);
         for further in &self.further {
-            let own = match sides(further).filter(|_| !retraction.is_empty()) {
-                Some(own) => own.concat(),
-                None => choice::wanted(spec, Some(further), line, width, &mut Vec::new())?,
-            };
-            let faults = own.iter().filter_map(|column| {
-                let before = wanted.iter().chain(&retraction).find(|before| before.at == column.at)?;
-                let (unit, before) = (column.unit.as_ref()?, before.unit.as_ref());
-                let is_same = before.is_some_and(|before| before.is_same(unit));
+            let faults = units_of(further).into_iter().filter_map(|(at, unit)| {
+                let used = wanted.iter().chain(&retraction).find(|used| used.at == at)?;
+                // What the user says of a column without a unit holds for all tables.
+                let own = units.iter().find(|(before, _)| *before == at).map(|(_, unit)| unit);
+                let before = own.or(used.unit.as_ref());
+                let is_same = before.is_some_and(|before| before.is_same(&unit));
                 let before = || before.map_or_else(|| "no unit".to_owned(), Unit::ascii);
-                (!is_same).then(|| CurveFault::Unit {
-                    number: column.at + 1,
-                    unit: unit.ascii(),
-                    before: before(),
-                })
+                (!is_same).then(|| CurveFault::Unit { number: at + 1, unit: unit.ascii(), before: before() })
             });
             faults.for_each(|fault| state.faults.add(further.line, fault));
         }

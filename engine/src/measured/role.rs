@@ -52,15 +52,19 @@ impl Segment {
     pub fn of(text: &str) -> Option<Self> {
         let word = text.to_lowercase();
         let is = |words: &str| words.split(' ').any(|known| known == word);
-        if is("false 0 0.0 approach approaching extend extending ext ex advance loading load trace in \
+        let number = text.parse::<f64>().ok();
+        let is_number = |wanted: f64| number.is_some_and(|number| number.total_cmp(&wanted).is_eq());
+        if is_number(0.0)
+            || is("false approach approaching extend extending ext ex advance loading load trace in \
             forward push")
         {
             Some(Self::Approach)
-        } else if is("true 1 1.0 retract retracting retraction ret rt withdraw withdrawal unloading unload \
+        } else if is_number(1.0)
+            || is("true retract retracting retraction ret rt withdraw withdrawal unloading unload \
             retrace out backward pull")
         {
             Some(Self::Retraction)
-        } else if is("2 2.0 pause hold holding dwell intermediate") {
+        } else if is_number(2.0) || is("pause hold holding dwell intermediate") {
             Some(Self::Other)
         } else {
             None

@@ -78,6 +78,8 @@ pub(super) struct CellFindings {
     pub faults: Faults<CurveFault>,
     /// The numbers that stand for branches, in the order in which they appear, each with its line and column.
     numbers: Vec<(u8, usize, usize)>,
+    /// Whether a branch is given by a word.
+    has_words: bool,
 }
 
 impl CellFindings {
@@ -93,6 +95,7 @@ impl CellFindings {
     ) {
         let mut row = Vec::with_capacity(wanted.len());
         let mut segment = branch;
+        let mut written = None;
         let mut is_whole = true;
         for want in wanted {
             let text = cells.get(want.at).copied().unwrap_or_default();
@@ -105,9 +108,7 @@ impl CellFindings {
                 is_whole = false;
             } else if want.role == ColumnRole::Segment {
                 segment = Segment::of(text);
-                if let (Some(number), true) = (segment, text.parse::<f64>().is_ok()) {
-                    self.numbered(number, line, want.at + 1);
-                }
+                written = Some((text, want.at + 1));
                 if segment.is_none() {
                     return self
                         .faults
@@ -126,6 +127,9 @@ impl CellFindings {
             self.skipped = self.skipped.or(Some(line));
             return;
         }
+        if let (Some(segment), Some((text, column))) = (segment, written) {
+            self.numbered(segment, text, [line, column]);
+        }
         measured.lines.push(line);
         for (column, (value, step)) in measured.columns.iter_mut().zip(row) {
             column.values.push(value);
@@ -136,8 +140,12 @@ impl CellFindings {
         }
     }
 
-    /// Takes note of a branch that is given by a number.
-    fn numbered(&mut self, branch: Segment, line: usize, column: usize) {
+    /// Takes note of a branch that is given by a number, and of one that is given by a word.
+    fn numbered(&mut self, branch: Segment, text: &str, [line, column]: [usize; 2]) {
+        if text.parse::<f64>().is_err() {
+            self.has_words = true;
+            return;
+        }
         let number = match branch {
             Segment::Approach => 0,
             Segment::Retraction => 1,
@@ -148,14 +156,15 @@ impl CellFindings {
         }
     }
 
-    /// Refuses numbers of branches unless they are 0 and 1, or 0, 2 and 1 in this order: others count from 1, or give the pause
-    /// the number 1.
+    /// Refuses numbers of branches unless they are 0 and 1, or with a 2 before the 1, or a 2 among words: others count from 1, or
+    /// give the pause the number 1.
     pub(super) fn judge_numbers(&mut self) {
         let numbers: Vec<u8> = self.numbers.iter().map(|(number, ..)| *number).collect();
         let Some((_, line, number)) = self.numbers.iter().copied().find(|(number, ..)| *number == 2) else {
             return;
         };
-        if numbers != [0, 2, 1] {
+        let is_known = matches!(numbers[..], [0, 2, 1] | [2, 0, 1]) || numbers == [2] && self.has_words;
+        if !is_known {
             let numbers = numbers.iter().map(u8::to_string).collect::<Vec<_>>().join(", ");
             self.faults.add(line, CurveFault::Numbered { number, numbers });
         }

@@ -134,16 +134,20 @@ impl FileSettings {
             (None, _) => return,
         };
         let Some((setting, dimension, needs_unit)) = setting(&name) else { return };
-        let Some((number, pointed, behind)) = number_and_rest(&value) else {
-            if value.starts_with(['<', '>', '~', '≈', '≤', '≥']) {
+        let found = number_and_rest(&value);
+        let found = found.map(|(number, pointed, behind)| (number, pointed, unit_in(behind)));
+        let (number, pointed, own) = match found {
+            Some((number, pointed, Some(own))) => (number, pointed, own.to_owned()),
+            None if !value.starts_with(['<', '>', '~', '≈', '≤', '≥']) => return,
+            _ => {
                 let (name, value) = (quote(&name), quote(&value));
                 self.notes.push(format!(
                     "the file states {name}: {value}, which is no single value: it is not used"
                 ));
+                return;
             }
-            return;
         };
-        let unit = Some(unit_in(behind)).filter(|unit| !unit.is_empty()).map(str::to_owned).or(unit);
+        let unit = Some(own).filter(|unit| !unit.is_empty()).or(unit);
         let parsed = unit.as_deref().map(|unit| Unit::parse(unit, 0).ok());
         let unit = match parsed {
             Some(Some(unit)) if unit.dimension() == dimension => Some(unit),
@@ -207,11 +211,26 @@ fn number_and_rest(value: &str) -> Option<(f64, String, &str)> {
     })
 }
 
-/// The unit behind a number, without its brackets and what is said further: an error, a remark, other settings.
-fn unit_in(behind: &str) -> &str {
-    let behind = behind.trim_start().trim_start_matches(['(', '[']);
-    let end = ["+-", "+/-"].iter().filter_map(|sign| behind.find(sign)).min().unwrap_or(behind.len());
-    behind[..end].split([',', ';', '(', '[', ')', ']', '±']).next().unwrap_or_default().trim()
+/// The unit behind a number, empty where there is none: without its brackets, behind an error or before one. `None` where what is said
+/// further makes the number another one, such as the largest.
+fn unit_in(behind: &str) -> Option<&str> {
+    const SIGNS: [&str; 3] = ["±", "+-", "+/-"];
+    const OTHERS: [&str; 5] = ["max", "min", "diam", "radius", "range"];
+    let begun = |text: &'_ str| {
+        text.len() - text.trim_start_matches([' ', '\t', '(', '[', ',', ';', ')', ']', '%']).len()
+    };
+    let mut rest = &behind[begun(behind)..];
+    while let Some(error) = SIGNS.iter().find_map(|sign| rest.strip_prefix(sign)) {
+        let (.., further) = number_and_rest(error.trim_start())?;
+        rest = &further[begun(further)..];
+    }
+    let ends = [',', ';', '(', '[', ')', ']', '±'];
+    let end =
+        SIGNS.iter().filter_map(|sign| rest.find(sign)).chain(rest.find(ends)).min().unwrap_or(rest.len());
+    let further = rest[end..].to_lowercase();
+    let mut words = further.split(|c: char| !c.is_alphabetic());
+    let is_other = words.any(|word| OTHERS.iter().any(|other| word.starts_with(other)));
+    (!is_other).then(|| rest[..end].trim())
 }
 
 /// The setting that `name` names, its dimension, and whether a unit is required.

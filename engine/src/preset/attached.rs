@@ -2,7 +2,7 @@
 
 use super::data::{
     self, BASELINE, COLUMNS, DataSpec, FILE, FREE, FREE_PART, OFFSET, SEGMENT, SEGMENTS, SETTINGS,
-    SETTINGS_OF, SIGNS, SKIP, TILT, UNCERTAIN,
+    SETTINGS_OF, SIGNS, SKIP, TARE, TILT, UNCERTAIN,
 };
 use super::given::GivenValues;
 use super::invalid::Invalid;
@@ -46,6 +46,7 @@ impl GivenValues<'_> {
             is_alone: self.values.contains_key(SETTINGS) && self.text(SETTINGS) == SETTINGS_OF[1],
             offset: optional(self, OFFSET),
             baseline: optional(self, BASELINE),
+            tare: optional(self, TARE),
             tilt: optional(self, TILT),
             free: self.text(FREE),
             uncertain: self.text(UNCERTAIN),

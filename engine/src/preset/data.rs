@@ -14,6 +14,8 @@ pub const FILE: &str = "data.file";
 pub const OFFSET: &str = "data.offset";
 /// The key of P₀, the force reading that means zero force.
 pub const BASELINE: &str = "data.baseline";
+/// The key of P₀ as far as a fit has found it where no rows show it: it is only where the next fit starts.
+pub const TARE: &str = "data.tare";
 /// The key of the slope of P₀.
 pub const TILT: &str = "data.tilt";
 /// The key of what the columns are.
@@ -33,20 +35,11 @@ pub const UNCERTAIN: &str = "data.uncertain";
 /// The key that says whether the file or the preset counts for the instrument.
 pub const SETTINGS: &str = "data.settings";
 /// The keys of what holds for one file only: how it is read, and where its zeros are.
-pub const OF_FILE: [&str; 8] = [COLUMNS, SEGMENT, FREE_PART, SIGNS, SKIP, OFFSET, BASELINE, TILT];
+pub const OF_FILE: [&str; 9] = [COLUMNS, SEGMENT, FREE_PART, SIGNS, SKIP, OFFSET, BASELINE, TARE, TILT];
 /// The words of [`SETTINGS`].
 pub const SETTINGS_OF: [&str; 2] = ["file", "preset"];
 /// The words of [`SEGMENT`].
 pub const SEGMENTS: [&str; 2] = ["approach", "retraction"];
-
-/// The signs between a value and its error in [`UNCERTAIN`]; the first one is written.
-pub const BETWEEN: [&str; 2] = ["+-", "±"];
-
-/// The key of one of the values that are given with an error.
-fn key(part: &str) -> &str {
-    let name = part.split_once('=').map_or(part, |(name, _)| name).trim();
-    OF_FILE.into_iter().find(|key| key.strip_prefix("data.") == Some(name)).unwrap_or(name)
-}
 
 /// A measured curve and how it is laid over the model's curve.
 #[derive(Debug, Clone, PartialEq, Default)]
@@ -57,10 +50,12 @@ pub struct DataSpec {
     pub columns: String,
     /// Whether the stiffness and the tip radius that the file states are ignored.
     pub is_alone: bool,
-    /// δ₀, in the numbers of the file whatever the signs of its columns, as the next two; `None` is 0.
+    /// δ₀, in the numbers of the file whatever the signs of its columns, as the next three; `None` is 0.
     pub offset: Option<f64>,
     /// P₀; `None` leaves it to the free part.
     pub baseline: Option<f64>,
+    /// P₀ where neither that nor a free part says it, as a fit has found it; `None` is 0.
+    pub tare: Option<f64>,
     /// The slope of P₀ over x; `None` is 0.
     pub tilt: Option<f64>,
     /// The branch to which the points are restricted.
@@ -83,23 +78,15 @@ impl DataSpec {
     /// The same without the file, and without what holds for it alone.
     #[must_use]
     pub fn without_file(&self) -> Self {
-        let Self { is_alone, free, .. } = self.clone();
-        let of_setup = |part: &&str| !OF_FILE.contains(&key(part));
-        let uncertain = self.uncertain.split(',').filter(of_setup).collect::<Vec<_>>().join(",");
+        let Self { is_alone, free, uncertain, .. } = self.clone();
         Self { is_alone, free, uncertain, ..Self::default() }
     }
 
-    /// The baseline that is known. One that a fit has left, beside what was known of it before, is not.
-    pub fn known_baseline(&self) -> Option<f64> {
-        let is_found = |part: &str| key(part) == BASELINE && BETWEEN.iter().any(|sign| part.contains(sign));
-        self.baseline.filter(|_| !self.uncertain.split(',').any(is_found))
-    }
-
     /// What lies between model and instrument, in the signs of `branches`: what is not given is 0, and the baseline that
-    /// of the free part.
+    /// of the free part, or the tare.
     pub fn instrument(&self, branches: &Branches) -> Instrument {
         let or_zero = |value: Option<f64>| value.unwrap_or(0.0);
-        let [offset, baseline, tilt] = [self.offset, self.baseline, self.tilt].map(or_zero);
+        let [offset, baseline, tilt] = [self.offset, self.baseline.or(self.tare), self.tilt].map(or_zero);
         let given = Instrument { offset, baseline, tilt }.turned(branches.turned);
         let found = branches.baseline.filter(|_| self.baseline.is_none());
         Instrument { baseline: found.unwrap_or(given.baseline), ..given }

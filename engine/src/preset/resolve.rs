@@ -47,11 +47,10 @@ pub(super) fn resolved(values: &Values, units: &UnitSystem, faults: &mut Vec<Inv
 pub(super) fn in_units(values: &Values, units: &UnitSystem, key: &Key, text: &str) -> Result<f64, Invalid> {
     let fault = |cause: ValueError| Invalid::Units { key: key.clone(), cause };
     let typed = parse_quantity(text).map_err(fault)?;
-    if let Some(degrees) = typed.degrees()
-        && !takes_radians(key)
-    {
-        let in_degrees = (**key == *LIQUID_KEYS[2]).then_some(degrees);
-        return in_degrees.ok_or_else(|| fault(typed.refused(Quantity::Number)));
+    if typed.is_angle() && !takes_radians(key) {
+        let in_degrees = typed.degrees().filter(|_| **key == *LIQUID_KEYS[2]);
+        let expected = quantity(values, key).filter(|_| *units != UnitSystem::Reduced);
+        return in_degrees.ok_or_else(|| fault(typed.refused(expected.unwrap_or(Quantity::Number))));
     }
     if *units == UnitSystem::Reduced {
         return typed.pure().map_err(fault);
@@ -76,8 +75,8 @@ pub(super) fn in_units(values: &Values, units: &UnitSystem, key: &Key, text: &st
 }
 
 /// Whether an angle is in radians there: the phase of a wave, and what a formula takes.
-fn takes_radians(key: &str) -> bool {
-    is_parameter(key) || is_phase(key)
+fn takes_radians(key: &Key) -> bool {
+    parameter_of(key).is_some() || is_phase(key)
 }
 
 /// What a key measures; `None` for the coefficient of a power law whose exponent gives it no unit.

@@ -189,6 +189,11 @@ impl Unit {
             && self.factors.iter().any(|factor| factor.unit.dimension == Dimension::NONE)
     }
 
+    /// Whether it is one unit, and no power or product.
+    pub fn is_single(&self) -> bool {
+        matches!(&self.factors[..], [Factor { power: 1, .. }])
+    }
+
     /// What is measured in it, with the article: 30 mJ/m² is an energy per area, 30 mN/m a force per length.
     pub fn measures(&self) -> String {
         let dimension = self.dimension();

@@ -150,9 +150,14 @@ impl TypedValue {
         }
     }
 
-    /// An angle in degrees; `None` of what has not the unit of an angle.
+    /// Whether it has a unit made of those of angles.
+    pub fn is_angle(&self) -> bool {
+        self.unit.as_ref().is_some_and(Unit::is_angle)
+    }
+
+    /// An angle in degrees; `None` of what has not the unit of an angle, or a power of one.
     pub fn degrees(&self) -> Option<f64> {
-        let unit = self.unit.as_ref().filter(|unit| unit.is_angle())?;
+        let unit = self.unit.as_ref().filter(|unit| unit.is_angle() && unit.is_single())?;
         // Degrees stay as they are typed.
         let is_degree = unit.to_si(1.0).to_bits() == 1_f64.to_radians().to_bits();
         Some(if is_degree { self.number } else { unit.to_si(self.number).to_degrees() })

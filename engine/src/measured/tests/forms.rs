@@ -323,6 +323,10 @@ fn settings_are_found_in_every_usual_form() {
         "Spring constant: 0.25 N/m (thermal)",
         "Spring constant: 0.25 (N/m)",
         "Spring constant: 2.5e-1N/m ± 10 %",
+        "Spring constant: 250 ± 10 mN/m",
+        "Spring constant: 250 ± 5 % mN/m",
+        "springConstant: 250 (+- 10) mN/m",
+        "Spring constant: 250;mN/m",
     ] {
         let found = stated(line).stiffness.unwrap_or_else(|| panic!("{line}"));
         assert!((found.value - 0.25).abs() < 1e-12, "{line}: {found:?}");
@@ -348,8 +352,16 @@ fn settings_are_found_in_every_usual_form() {
         "{:?}",
         unknown.notes
     );
-    let bound = stated("Tip radius: < 25 um");
-    assert!(bound.radius.is_none() && bound.notes[0].contains("no single value"), "{:?}", bound.notes);
+    for line in
+        ["Tip radius: < 25 um", "Tip radius: 20 um (max), 10 um (min)", "Tip radius: 25 um (diameter)"]
+    {
+        let bound = stated(line);
+        assert!(
+            bound.radius.is_none() && bound.notes[0].contains("no single value"),
+            "{line}: {:?}",
+            bound.notes
+        );
+    }
     let two = stated("k (N/m)\t0.25\nk (N/m)\t0.5");
     assert!(two.stiffness.is_some() && two.notes[0].contains("two springs"), "{:?}", two.notes);
     // A rounded value does not contradict.
@@ -416,6 +428,9 @@ fn a_comma_that_may_separate_thousands_is_refused() {
     };
     let refused = file(|x| format!("{x:.3}").replace('.', ",")).unwrap_err().to_string();
     assert!(refused.contains("line 2: in \"150,950\", as in all numbers with a comma"), "{refused}");
+    // A column that is not used tells, too.
+    let beside = lines(&half(false), |i, _, p| format!("{i},5;{},950;{}", 100 + i, p * 1e6));
+    parse(format!("time [s];depth [nm];load [nN]\n{beside}").as_bytes(), &ColumnSpec::default()).unwrap();
     for write in [
         |x: f64| format!("{x:.2}").replace('.', ","),
         |x: f64| format!("{:.3}", x - 300.0).replace('.', ","),

@@ -295,7 +295,7 @@ impl Preset {
 fn pure(row: &Parameter, text: &str) -> Result<f64, Invalid> {
     let cause = |cause| Invalid::Units { key: row.key.clone(), cause };
     let typed = parse_quantity(text).map_err(cause)?;
-    if typed.degrees().is_some() {
+    if typed.is_angle() {
         return Err(cause(typed.refused(Quantity::Number)));
     }
     typed.in_si(Quantity::Number, None).map_err(cause)

@@ -85,6 +85,7 @@ impl Preset {
             }
             data::OFFSET => data.offset?.into(),
             data::BASELINE => data.baseline?.into(),
+            data::TARE => data.tare?.into(),
             data::TILT => data.tilt?.into(),
             key if path.turn.and_then(turn_key) == Some(key) => path.turn?.value().into(),
             key if key == start_key(path.start) => path.start.value().into(),

@@ -205,6 +205,7 @@ parameters! {
     data::OFFSET => "delta0" Length "x of the measured curve at which the approach is zero": Finite or Described("0");
     data::BASELINE => "P0" Force "measured force that counts as zero":
         Finite or Described("the median of its free part; without one, 0, and a fit finds it");
+    data::TARE => "tare" Force "the same as a fit has found it, where neither data.baseline nor rows apart say it": Finite or Described("0");
     data::TILT => "tilt" ForcePerLength "slope of that force over x": Finite or Described("0");
     DISPLAY[0].0 => "lengths" Number "unit in which lengths are shown":
         Text { max_chars: 20 } or Text("um") only UNITS ["SI"];

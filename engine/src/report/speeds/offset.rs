@@ -54,7 +54,7 @@ impl FoundOffset {
         alone.data.uncertain.clear();
         // G is computed with the force as it is, and so must the offset be.
         if branches.baseline.is_none() {
-            alone.data.baseline.get_or_insert(0.0);
+            alone.data.baseline.get_or_insert(alone.data.tare.unwrap_or(0.0));
         }
         let has = |segment| branches.list.iter().any(|branch| branch.segment == segment);
         let mut free = ["material.work_of_adhesion", OFFSET].map(str::to_owned).to_vec();
@@ -109,7 +109,7 @@ pub(super) fn doubt_of_baseline(
 ) -> Option<String> {
     /// Less than with an offset: a tare may be larger than is assumed here.
     const LITTLE: f64 = 0.01;
-    if preset.data.baseline.or(branches.baseline).is_some() {
+    if preset.data.baseline.or(branches.baseline).or(preset.data.tare).is_some() {
         return None;
     }
     let tare = branches.tare();

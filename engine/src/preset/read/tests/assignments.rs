@@ -42,7 +42,15 @@ fn angles_are_taken_in_the_unit_of_their_key() {
         assert_eq!(degrees(text).to_bits(), 60_f64.to_bits(), "{text}");
     }
     assert!((degrees("350 mrad") - 0.35_f64.to_degrees()).abs() < 1e-12);
-    assert!(angle("95 deg").is_err() && angle("20 nm").is_err());
+    assert!(["95 deg", "20 nm", "60 deg^2", "60 rad/rad"].iter().all(|text| angle(text).is_err()));
+    let refused = read_with("b.toml", bridge, &["material.kelvin_radius=1 deg"]).unwrap_err().to_string();
+    assert!(refused.contains("expected a length such as um, got 1 deg, an angle"), "{refused}");
+    let formula = "[gap]\nshape='formula'\nformula='r^2*sin(th)'\n[gap.parameters]\nth={value='30 deg', min='0 deg', max='90 deg'}\n\
+                   [material]\neffective_modulus=1.0\nwork_of_adhesion=0.01\n[path]\nstart_contact_radius=0.3";
+    assert_eq!(
+        read("f.toml", formula).unwrap().get("gap.parameters.th.max"),
+        Some(std::f64::consts::FRAC_PI_2.into())
+    );
     // A slope is no angle; a phase is one.
     let refused = messages(WAVY, &["gap.shape=cone", "gap.slope=10 deg"]);
     assert!(refused[0].ends_with("gap.slope: expected a pure number, got 10 deg, an angle"), "{refused:?}");
