@@ -42,7 +42,7 @@ pub(super) fn goes_on(model: &Model) -> Available {
 
 /// Requires a state of a walk that may turn round; along a path, the walk follows the device.
 pub(super) fn turns(model: &Model) -> Available {
-    walker(model)?;
+    goes_on(model)?;
     when(model.curve.as_ref().is_none_or(|curve| curve.along.is_none()), || {
         let undo = Id::Undo.named();
         match model.preset.path.begin {

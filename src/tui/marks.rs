@@ -51,7 +51,8 @@ fn row(role: Role, theme: Theme) -> (RasterStroke, Lettered, u8) {
         Role::Zone => (styles.jump, Tints, false, 'z', Legend, 3),
         Role::Barrier => (styles.aid, Beneath, true, '=', Legend, 8),
         Role::Level => (styles.aid, Beneath, true, '=', Legend, 3),
-        Role::Device => (styles.aid, Beneath, true, ':', Legend, 8),
+        // Unnamed beside measured points, it would be taken for a curve that misses them.
+        Role::Device => (styles.aid, Beneath, true, ':', Legend, 2),
         Role::Jump => (styles.jump, Beneath, true, 'j', Legend, 9),
         Role::Landings => (styles.exact, Shares, true, 'n', Never, 1),
         Role::Unchanged | Role::Twin => (styles.smooth, Beneath, true, '.', Never, 9),
