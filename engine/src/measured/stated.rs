@@ -227,7 +227,8 @@ fn unit_in(behind: &str) -> Option<&str> {
     let ends = [',', ';', '(', '[', ')', ']', '±'];
     let end =
         SIGNS.iter().filter_map(|sign| rest.find(sign)).chain(rest.find(ends)).min().unwrap_or(rest.len());
-    let further = rest[end..].to_lowercase();
+    // A sentence continues with other settings.
+    let further = rest[end..].split([',', ';']).next().unwrap_or_default().to_lowercase();
     let mut words = further.split(|c: char| !c.is_alphabetic());
     let is_other = words.any(|word| OTHERS.iter().any(|other| word.starts_with(other)));
     (!is_other).then(|| rest[..end].trim())

@@ -338,6 +338,7 @@ fn settings_are_found_in_every_usual_form() {
         "R [um]: 2,5",
         "Tip radius: 2.5um",
         "Tip radius: 2500nm (nominal)",
+        "Tip radius: 2.5 um; range of the piezo 100 um",
     ] {
         let found = stated(line).radius.unwrap_or_else(|| panic!("{line}"));
         assert!((found.value - 2.5e-6).abs() < 1e-15, "{line}: {found:?}");
