@@ -187,8 +187,9 @@ impl Decimals {
         }
         if comma && is_grouped(text) {
             self.grouped.get_or_insert_with(|| (line, quote(text)));
+        } else if comma {
+            self.is_sure = true;
         }
-        self.is_sure |= rules_out_thousands(text);
         let mut plain = Cow::Borrowed(text);
         if comma || text.contains(['\u{2212}', 'd', 'D']) {
             // 1.5D-05 is how Fortran writes 1.5e-05.

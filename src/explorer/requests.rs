@@ -6,6 +6,7 @@ use super::job::Job;
 use super::model::{Awaits, Level, Model, Walking};
 use super::node::NodeKind;
 use super::pins::{labelled, labelled_with};
+use pulloff_engine::Shape;
 use pulloff_engine::preset::{Key, Preset, Row, Value, edge};
 use pulloff_engine::problem::Control;
 use pulloff_engine::text::greek;
@@ -108,13 +109,16 @@ pub(super) fn change(model: &mut Model, preset: Preset) -> Vec<Effect> {
     effects
 }
 
-/// The values of the gap that another shape brings with it, in words; `None` where there are none.
+/// The values of the gap that another shape brings with it, or the profile that stands in for the user's, in words; `None` where
+/// there are none.
 fn brought_by_shape(before: &Preset, now: &Preset) -> Option<String> {
     const SHAPE: &str = "gap.shape";
     if before.get(SHAPE) == now.get(SHAPE) {
         return None;
     }
-    if now.get("gap.file").is_some_and(|file| file.to_string().contains("shipped:")) {
+    if let Shape::Profile(measured) = &now.gap
+        && measured.rows().is_shipped()
+    {
         let choose = Id::Edit.named();
         return Some(format!("a shipped profile stands in for yours: {choose} on the value file chooses it"));
     }

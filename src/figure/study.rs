@@ -121,15 +121,12 @@ pub fn of(data: &StudyData, preset: &Preset, axes: Axes) -> Figure {
         let at = found.iter().find(|(at, _)| (at - x).abs() <= 1e-12 * x.abs());
         figure.marks.extend(at.map(|at| Mark { sign: Sign::Preset, at: *at }));
     }
-    if found.is_empty() {
-        // An empty chart without a word would look as if it were still being computed.
-        figure.missing = why_none(data);
-    }
+    figure.missing = why_none(data);
     figure.notes.extend(notes(data, places.iter().filter(|(_, y)| y.is_none()).count()));
     figure
 }
 
-/// Why no value at all was found, once all are computed.
+/// Why no value at all was found, once all are computed: an empty chart without a word would look as if it still were to come.
 fn why_none(data: &StudyData) -> Option<String> {
     let reasons = data.outcomes.iter().map(|outcome| match outcome {
         StudyOutcome::Missing(why) => Some(why.as_str()),

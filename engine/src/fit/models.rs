@@ -285,7 +285,7 @@ mod tests {
     use crate::fit::verdict::Verdict::{Describes, DoesNotDescribe, NotDetermined};
 
     #[test]
-    fn a_model_that_is_refuted_is_told_apart_whatever_its_aic() {
+    fn a_comparison_says_which_model_is_refuted() {
         let of = |verdict, difference| sentence(["a", "b"], [Some(Describes), Some(verdict)], difference);
         assert!(
             of(DoesNotDescribe, -3.0)

@@ -216,7 +216,7 @@ fn number_and_rest(value: &str) -> Option<(f64, String, &str)> {
 fn unit_in(behind: &str) -> Option<&str> {
     const SIGNS: [&str; 3] = ["±", "+-", "+/-"];
     const OTHERS: [&str; 5] = ["max", "min", "diam", "radius", "range"];
-    let begun = |text: &'_ str| {
+    let begun = |text: &str| {
         text.len() - text.trim_start_matches([' ', '\t', '(', '[', ',', ';', ')', ']', '%']).len()
     };
     let mut rest = &behind[begun(behind)..];

@@ -328,6 +328,23 @@ mod tests {
     }
 
     #[test]
+    fn a_tare_is_that_of_its_file() {
+        let folder = tempfile::tempdir().unwrap();
+        let rows: Vec<String> = (0..20).map(|i| format!("{i},{},approach", i * i)).collect();
+        let text = format!("indentation,force,segment\n{}\n", rows.join("\n"));
+        std::fs::write(folder.path().join("d.csv"), &text).unwrap();
+        let preset = read(folder.path(), "", "[data]\nfile='d.csv'\ntare=0.5\n").unwrap();
+        let with = |bytes: String| {
+            let mut changed = preset.clone();
+            let file = PointsFile::new("e.csv".to_owned(), None, bytes.into_bytes().into());
+            changed.set(FILE, Value::Points(Arc::new(file))).unwrap();
+            changed.data.tare
+        };
+        assert_eq!((preset.data.tare, with(text.clone())), (Some(0.5), Some(0.5)));
+        assert_eq!(with(format!("{text}20,400,approach\n")), None);
+    }
+
+    #[test]
     fn units_and_springs_that_contradict_the_preset_are_refused() {
         let folder = folder();
         let error = read(folder.path(), "", "[data]\nfile='units.txt'\n").unwrap_err();

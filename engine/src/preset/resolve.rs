@@ -47,12 +47,15 @@ pub(super) fn resolved(values: &Values, units: &UnitSystem, faults: &mut Vec<Inv
 pub(super) fn in_units(values: &Values, units: &UnitSystem, key: &Key, text: &str) -> Result<f64, Invalid> {
     let fault = |cause: ValueError| Invalid::Units { key: key.clone(), cause };
     let typed = parse_quantity(text).map_err(fault)?;
-    if typed.is_angle() && !takes_radians(key) {
-        let in_degrees = typed.degrees().filter(|_| **key == *LIQUID_KEYS[2]);
-        let expected = quantity(values, key).filter(|_| *units != UnitSystem::Reduced);
-        return in_degrees.ok_or_else(|| fault(typed.refused(expected.unwrap_or(Quantity::Number))));
+    if let Some(degrees) = typed.degrees().filter(|_| **key == *LIQUID_KEYS[2]) {
+        return Ok(degrees);
     }
-    if *units == UnitSystem::Reduced {
+    let is_reduced = *units == UnitSystem::Reduced;
+    // The phase of a wave is in radians, and so is what a formula takes.
+    if typed.is_angle() && (is_phase(key) || is_reduced && parameter_of(key).is_some()) {
+        return typed.in_own_si().map_err(fault);
+    }
+    if is_reduced {
         return typed.pure().map_err(fault);
     }
     if let Some(parameter) = parameter_of(key) {
@@ -72,11 +75,6 @@ pub(super) fn in_units(values: &Values, units: &UnitSystem, key: &Key, text: &st
         // Without an exponent there is no gap, which is reported elsewhere.
         (None, None) => typed.in_own_si().map_err(fault),
     }
-}
-
-/// Whether an angle is in radians there: the phase of a wave, and what a formula takes.
-fn takes_radians(key: &Key) -> bool {
-    parameter_of(key).is_some() || is_phase(key)
 }
 
 /// What a key measures; `None` for the coefficient of a power law whose exponent gives it no unit.

@@ -124,10 +124,11 @@ impl TypedValue {
     /// # Errors
     /// Another dimension; a value that is too large or too small for a double.
     pub fn in_si(&self, expected: Quantity, unit: Option<&Unit>) -> Result<f64, ValueError> {
+        // Whether an angle counts in degrees or radians is for its key to say.
         if let Some(own) = &self.unit
-            && own.dimension() != expected.dimension()
+            && (own.dimension() != expected.dimension() || own.is_angle())
         {
-            return Err(self.refused(expected));
+            return Err(ValueError::Dimension { expected, text: self.text.clone(), got: own.measures() });
         }
         self.in_si_of(unit)
     }
@@ -163,19 +164,15 @@ impl TypedValue {
         Some(if is_degree { self.number } else { unit.to_si(self.number).to_degrees() })
     }
 
-    /// That another quantity was expected.
-    pub fn refused(&self, expected: Quantity) -> ValueError {
-        let got = self.unit.as_ref().map_or_else(String::new, Unit::measures);
-        ValueError::Dimension { expected, text: self.text.clone(), got }
-    }
-
-    /// The value of a quantity without units; an angle in degrees counts as a pure number too.
+    /// The value of a quantity without units.
     ///
     /// # Errors
-    /// A unit of another dimension, or a value that is too large or too small for a double.
+    /// A unit of another dimension or of an angle, or a value that is too large or too small for a double.
     pub fn pure(&self) -> Result<f64, ValueError> {
         match &self.unit {
-            Some(unit) if unit.dimension() == Quantity::Number.dimension() => self.in_si_of(None),
+            Some(unit) if unit.dimension() == Quantity::Number.dimension() && !unit.is_angle() => {
+                self.in_si_of(None)
+            }
             None => Ok(self.number),
             Some(unit) => Err(ValueError::Reduced { text: self.text.clone(), got: unit.measures() }),
         }
@@ -203,7 +200,6 @@ mod tests {
             ("2e3 eV", Quantity::Energy, 2e3 * 1.602_176_634 / 1e19),
             ("1e-3", Quantity::Number, 1e-3),
             ("3*pi/2", Quantity::Number, 3.0 * std::f64::consts::FRAC_PI_2),
-            ("90 deg", Quantity::Number, std::f64::consts::FRAC_PI_2),
             ("0 um", Quantity::Length, 0.0),
             ("2e3 m^-1", Quantity::InverseLength(1), 2e3),
             ("3 1/mm^2", Quantity::InverseLength(2), 3e6),
@@ -229,10 +225,14 @@ mod tests {
     }
 
     #[test]
-    fn degrees_are_a_pure_number_and_lengths_are_not() {
+    fn ratios_are_pure_numbers_and_angles_and_lengths_are_not() {
         let pure = |text| parse_quantity(text).and_then(|value| value.pure());
-        assert_eq!(pure("90 deg"), Ok(std::f64::consts::FRAC_PI_2));
         assert_eq!(pure("0.5"), Ok(0.5));
+        assert_eq!(pure("3 mm/m"), Ok(3e-3));
+        assert!(["90 deg", "1 rad/rad"].iter().all(|text| pure(text).is_err()));
+        let degrees = |text| parse_quantity(text).ok().and_then(|value| value.degrees());
+        assert_eq!([degrees("90 deg"), degrees("90"), degrees("1 deg^2")], [Some(90.0), None, None]);
+        assert_eq!(parse_quantity("90 deg").unwrap().in_own_si(), Ok(std::f64::consts::FRAC_PI_2));
         assert!(matches!(pure("2 nm"), Err(ValueError::Reduced { .. })));
     }
 

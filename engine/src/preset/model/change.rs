@@ -121,8 +121,15 @@ impl Preset {
                 values.remove(data::FILE);
                 return;
             }
-            // A device without a stiffness becomes the spring that the file states.
             data::FILE => {
+                // A tare was found for one file only.
+                let own = self.data.source.as_ref();
+                if let (Value::Points(source), Some(own)) = (&value, own)
+                    && !source.has_bytes_of(own)
+                {
+                    values.remove(data::TARE);
+                }
+                // A device without a stiffness becomes the spring that the file states.
                 let columns = values.get(data::COLUMNS).map(ToString::to_string).unwrap_or_default();
                 let is_alone =
                     values.get(data::SETTINGS).is_some_and(|word| word.to_string() == data::SETTINGS_OF[1]);
@@ -294,11 +301,7 @@ impl Preset {
 /// The number that a text gives for a group, which has no unit.
 fn pure(row: &Parameter, text: &str) -> Result<f64, Invalid> {
     let cause = |cause| Invalid::Units { key: row.key.clone(), cause };
-    let typed = parse_quantity(text).map_err(cause)?;
-    if typed.is_angle() {
-        return Err(cause(typed.refused(Quantity::Number)));
-    }
-    typed.in_si(Quantity::Number, None).map_err(cause)
+    parse_quantity(text).and_then(|typed| typed.in_si(Quantity::Number, None)).map_err(cause)
 }
 
 /// Stores a checked value; a part of a value becomes the whole.

@@ -53,7 +53,10 @@ fn angles_are_taken_in_the_unit_of_their_key() {
     );
     // A slope is no angle; a phase is one.
     let refused = messages(WAVY, &["gap.shape=cone", "gap.slope=10 deg"]);
-    assert!(refused[0].ends_with("gap.slope: expected a pure number, got 10 deg, an angle"), "{refused:?}");
+    assert!(
+        refused[0].ends_with("reduced units: expected a pure number, got 10 deg, an angle"),
+        "{refused:?}"
+    );
     let waves = set(&[
         "gap.shape=harmonics",
         "gap.waves.1.amplitude=1e-3",
