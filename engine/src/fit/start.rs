@@ -234,6 +234,16 @@ impl FitProblem {
         Some(std::iter::once(own).chain(strengths.map(with)).collect())
     }
 
+    /// Candidates around the preset's values where adhesion has a range: with it, and E*, a few times smaller and larger.
+    fn around_own(&self) -> Vec<Vec<f64>> {
+        const RANGES: [f64; 5] = [1.0, 0.5, 2.0, 0.25, 4.0];
+        const MODULI: [f64; 5] = [1.0, 0.3, 3.0, 0.1, 10.0];
+        let own: Vec<f64> =
+            self.parameters.iter().map(|parameter| parameter.inner(parameter.start)).collect();
+        let modulus = self.index(|target| target.key() == MODULUS);
+        varied(varied(vec![own], self.free_range(), &RANGES), modulus.first().copied(), &MODULI)
+    }
+
     /// Candidates for a pull at a rate: the best ones of a quasi-static retraction, whose moduli are too large, with
     /// slow and fast laws. `None` where there is no such pull.
     fn of_rates(&self, robust: bool, progress: &dyn Progress) -> Option<Vec<Vec<f64>>> {
@@ -264,25 +274,14 @@ impl FitProblem {
         let is_force = self.preset.path.control == Control::Force;
         let unit = self.preset.edge.rate.filter(|_| !is_force).or(self.preset.edge.reference_speed)?;
         let mut list = vec![own];
-        let vary = |list: Vec<Vec<f64>>, j: Option<usize>, values: &dyn Fn(f64) -> Vec<f64>| match j {
-            None => list,
-            Some(j) => {
-                let each = |u: Vec<f64>| {
-                    values(u[j])
-                        .into_iter()
-                        .map(move |value| {
-                            let mut u = u.clone();
-                            u[j] = value;
-                            u
-                        })
-                        .collect::<Vec<_>>()
-                };
-                list.into_iter().flat_map(each).collect()
-            }
-        };
-        let scan = vary(vec![base], modulus, &|u| SOFTER.map(|factor| u + ln(factor)).to_vec());
-        let scan = vary(scan, speed, &|_| SPEEDS.map(|factor| ln(factor * unit)).to_vec());
-        list.extend(vary(scan, exponent, &|_| EXPONENTS.map(ln).to_vec()));
+        for (j, value) in [(speed, unit), (exponent, 1.0)] {
+            j.into_iter().for_each(|j| base[j] = ln(value));
+        }
+        list.extend(varied(
+            varied(varied(vec![base], modulus, &SOFTER), speed, &SPEEDS),
+            exponent,
+            &EXPONENTS,
+        ));
         Some(list)
     }
 
@@ -375,27 +374,13 @@ impl FitProblem {
         let closing = self.index(|t| *t == Target::Adhesion(Segment::Approach));
         let mut grid = vec![own];
         for j in closing {
-            let with = |factor: f64| {
-                let mut u = grid[0].clone();
-                u[j] += ln(factor);
-                u
-            };
-            grid = CLOSINGS.map(with).to_vec();
+            grid = varied(grid, Some(j), &CLOSINGS);
         }
         for j in others {
             if grid.len() * FACTORS.len() > MOST / if modulus.is_empty() { 1 } else { MODULI } {
                 break;
             }
-            grid = grid
-                .iter()
-                .flat_map(|u| {
-                    FACTORS.map(|factor| {
-                        let mut u = u.clone();
-                        u[j] += ln(factor);
-                        u
-                    })
-                })
-                .collect();
+            grid = varied(grid, Some(j), &FACTORS);
         }
         // On waves a smaller step is needed so as not to miss the right count of snaps.
         let fine = self.preset.gap.feature_length().is_some() && grid.len() == 1;
@@ -425,23 +410,65 @@ pub struct StartEnds {
     pub tried: Vec<Tried>,
 }
 
+impl StartEnds {
+    /// The least mean distance of those that were run.
+    fn nearest(&self) -> f64 {
+        self.tried.iter().map(|tried| tried.distance).fold(f64::INFINITY, f64::min)
+    }
+}
+
 /// The best start and those that were run; `progress` is told the share that is done.
 pub fn start(problem: &FitProblem, scan: bool, robust: bool, progress: &dyn Progress) -> Option<StartEnds> {
     if scan && problem.loops && problem.pins() {
         let (best, tried) = problem.pinned(robust, progress)?;
         return Some(StartEnds { best, others: Vec::new(), tried });
     }
+    let run = problem.thinned(RUN);
     let ranked = ranked(problem, scan, robust, progress);
-    best_of(&problem.thinned(RUN), ranked, (scan, robust), progress)
+    let found = best_of(&run, ranked, (scan, robust), progress);
+    // A record that ends in tension misleads a law without range, and with it the starts taken from there.
+    let is_near = |ends: &StartEnds| ends.nearest() < REACHED;
+    if !scan || problem.preset.cohesion().is_none() || found.as_ref().is_some_and(is_near) {
+        return found;
+    }
+    let compared = problem.thinned(COMPARED);
+    let around = settled(problem, &compared, problem.around_own(), scan, progress);
+    let mut around = led(&compared, around, POOL, robust, progress);
+    around.truncate(BEST);
+    let other = best_of(&run, around, (scan, robust), progress);
+    [found, other].into_iter().flatten().min_by(|a, b| a.nearest().total_cmp(&b.nearest()))
 }
 
 /// The candidates nearest to the points, each with its distance, the nearest first.
 fn ranked(problem: &FitProblem, scan: bool, robust: bool, progress: &dyn Progress) -> Vec<(f64, Vec<f64>)> {
-    let compared = problem.thinned(COMPARED);
-    let attached = problem.data.iter().filter(|datum| !datum.free);
-    let least = attached.map(|datum| datum.point.force).fold(f64::INFINITY, f64::min);
     let others = || problem.of_ranges(robust, progress).or_else(|| problem.of_rates(robust, progress));
     let candidates = if scan { others() } else { None }.unwrap_or_else(|| problem.candidates(scan));
+    let compared = problem.thinned(COMPARED);
+    let mut ranked = settled(problem, &compared, candidates, scan, progress);
+    if scan && problem.preset.gap.feature_length().is_some() {
+        let early = may_end_early(&problem.preset, &problem.data);
+        ranked = led(&compared, ranked, if early { MANY } else { POOL }, robust, progress);
+    }
+    ranked.truncate(BEST);
+    // The values of a pull that are given may be guesses that its scan does not come near.
+    if scan && is_pulled(&problem.preset) {
+        let own = settled(problem, &compared, problem.candidates(false), scan, progress);
+        ranked = own.into_iter().chain(ranked).collect();
+    }
+    ranked
+}
+
+/// The candidates, the first as it is, and all of them as they suit the smallest force and where x is zero, each with its
+/// distance, the nearest first.
+fn settled(
+    problem: &FitProblem,
+    compared: &FitProblem,
+    candidates: Vec<Vec<f64>>,
+    scan: bool,
+    progress: &dyn Progress,
+) -> Vec<(f64, Vec<f64>)> {
+    let attached = problem.data.iter().filter(|datum| !datum.free);
+    let least = attached.map(|datum| datum.point.force).fold(f64::INFINITY, f64::min);
     let count = candidates.len() as f64;
     let mut ranked: Vec<(f64, Vec<f64>)> = Vec::new();
     for (i, u) in candidates.into_iter().enumerate() {
@@ -456,42 +483,48 @@ fn ranked(problem: &FitProblem, scan: bool, robust: bool, progress: &dyn Progres
             ranked.extend(compared.distance(&u).map(|distance| (distance, u)));
         }
     }
-    let by_distance = |ranked: &mut Vec<(f64, Vec<f64>)>, most: usize| {
-        ranked.sort_by(|a, b| a.0.total_cmp(&b.0));
-        ranked.truncate(most);
-    };
-    let early = scan && may_end_early(&problem.preset, &problem.data);
-    if scan && problem.preset.gap.feature_length().is_some() {
-        by_distance(&mut ranked, if early { MANY } else { POOL });
-        let nearest = ranked.first().map_or(0.0, |(distance, _)| *distance);
-        for (distance, u) in ranked.iter_mut().filter(|(distance, _)| *distance <= NEAR * nearest) {
-            let led = solve(&compared, u, robust, FEW_ROUNDS, progress).map(|led| led.minimum.parameters);
-            if let Some((closer, led)) = led.and_then(|led| Some((compared.distance(&led)?, led)))
-                && closer < *distance
-            {
-                (*distance, *u) = (closer, led);
-            }
-        }
-        // Several of them lead to one place.
-        let mut places: Vec<(f64, Vec<f64>)> = Vec::new();
-        for (distance, u) in ranked {
-            if places.iter().all(|(_, other)| apart(other, &u) > ONE) {
-                places.push((distance, u));
-            }
-        }
-        ranked = places;
-    }
-    by_distance(&mut ranked, BEST);
-    // The values of a pull that are given may be guesses that its scan does not come near.
-    if scan && is_pulled(&problem.preset) {
-        let own = problem.candidates(false);
-        let at = problem.instrument_at(&own[0]);
-        let settled = compared.settled(own[0].clone(), least - at.baseline).into_iter().flatten();
-        let own: Vec<Vec<f64>> = own.iter().cloned().chain(settled).collect();
-        let own = own.into_iter().filter_map(|u| Some((compared.distance(&u)?, u)));
-        ranked = own.chain(ranked).collect();
-    }
+    ranked.sort_by(|a, b| a.0.total_cmp(&b.0));
     ranked
+}
+
+/// At most `most` of the ranked candidates where a few rounds lead them, the nearest first.
+fn led(
+    compared: &FitProblem,
+    mut ranked: Vec<(f64, Vec<f64>)>,
+    most: usize,
+    robust: bool,
+    progress: &dyn Progress,
+) -> Vec<(f64, Vec<f64>)> {
+    ranked.truncate(most);
+    let nearest = ranked.first().map_or(0.0, |(distance, _)| *distance);
+    for (distance, u) in ranked.iter_mut().filter(|(distance, _)| *distance <= NEAR * nearest) {
+        let led = solve(compared, u, robust, FEW_ROUNDS, progress).map(|led| led.minimum.parameters);
+        if let Some((closer, led)) = led.and_then(|led| Some((compared.distance(&led)?, led)))
+            && closer < *distance
+        {
+            (*distance, *u) = (closer, led);
+        }
+    }
+    // Several of them lead to one place.
+    let mut places: Vec<(f64, Vec<f64>)> = Vec::new();
+    for (distance, u) in ranked {
+        if places.iter().all(|(_, other)| apart(other, &u) > ONE) {
+            places.push((distance, u));
+        }
+    }
+    places.sort_by(|a, b| a.0.total_cmp(&b.0));
+    places
+}
+
+/// Each of `list` with its value `j`, a logarithm, at each of `factors`.
+fn varied(list: Vec<Vec<f64>>, j: Option<usize>, factors: &[f64]) -> Vec<Vec<f64>> {
+    let Some(j) = j else { return list };
+    let with = |u: &Vec<f64>, factor: f64| {
+        let mut u = u.clone();
+        u[j] += ln(factor);
+        u
+    };
+    list.iter().flat_map(|u| factors.iter().map(|factor| with(u, *factor))).collect()
 }
 
 /// The largest difference of a value.

@@ -1,21 +1,22 @@
 //! Models other than adhesion at the edge alone: how their paths move with their values, and which of them the points
 //! tell apart.
 
-use super::bodies::State;
-use super::device::{By, Peel, Sample};
-use super::kinds::{DOUBTFUL, Made, plain};
+use super::bodies::{Body, State};
+use super::device::{By, Device, Peel, Sample, Way};
+use super::kinds::{ADHESION, DOUBTFUL, MODULUS, Made, plain};
 use super::record::{Random, Record, Seen};
 use super::trial::{Outcome, fitted, made, options, outcome, preset};
 use pulloff_engine::fit::path::FitPath;
 use pulloff_engine::fit::reach::Reach;
 use pulloff_engine::fit::together::CurveFits;
 use pulloff_engine::fit::track::Mover;
-use pulloff_engine::fit::way::Way;
+use pulloff_engine::fit::way::Way as PathWay;
 use pulloff_engine::fit::{AdhesionModel, Together, Verdict, fit_models, fit_own, fit_together};
 use pulloff_engine::measured::Abscissa;
-use pulloff_engine::preset::{Preset, Value, read};
+use pulloff_engine::preset::{Preset, Value, data, read};
 use pulloff_engine::problem::Groups;
 use pulloff_engine::progress::Unwatched;
+use std::f64::consts::TAU;
 use std::ops::Range;
 
 /// What a key moves, through its logarithm.
@@ -28,7 +29,7 @@ const MOVED: [(&str, Mover); 4] = [
 
 fn path(preset: &Preset, abscissa: Abscissa) -> FitPath {
     let reach = Reach { most: [0.1, 0.1, 0.3], turn: [0.1, 0.1], radius: Some(0.4), length: 1.0, noise: 0.0 };
-    FitPath::new(preset, abscissa, &reach, Way::Down).unwrap()
+    FitPath::new(preset, abscissa, &reach, PathWay::Down).unwrap()
 }
 
 #[test]
@@ -108,6 +109,39 @@ fn adhesion_of_a_range_is_found_with_its_model() {
             told += usize::from(pair.told_apart && pair.models[0] == AdhesionModel::Dugdale);
         }
         assert!(told >= least, "{name}: {told}");
+    }
+}
+
+#[test]
+fn a_range_is_found_where_the_record_turns_in_tension_and_x_has_an_offset() {
+    /// The guess over the truth, of E*, γ and σ₀.
+    const GUESSES: [[f64; 3]; 3] = [[1.0, 0.96, 0.6], [3.0, 1.2, 0.3], [0.4, 0.8, 2.0]];
+    let (radius, e, w, mu) = (1e-6, 1e10, 0.135, 0.2);
+    let body = Body::of_range(radius, e, w, mu, 4e-8);
+    let device = Device { stiffness: f64::INFINITY, rows: 150, apart: 0.25 };
+    let tension = 1.157 * mu * (TAU * w * e * e / (9.0 * radius)).cbrt();
+    let offset = 5e-9;
+    let record = Record::of(&device.cycle(&body), Seen::Approach);
+    let least = record.force.iter().copied().fold(f64::INFINITY, f64::min);
+    let last = record.force[record.ways.iter().rposition(|way| *way == Way::In).unwrap()];
+    assert!(last < 0.2 * least, "{last} {least}");
+    let shifted = record.changed(|_, x, force| [x + offset, force]);
+    let text = shifted.noisy(0.002 * least.abs(), &mut Random::new(5)).text();
+    let truth =
+        vec![(MODULUS, e), (ADHESION, w), ("material.cohesive_strength", tension), (data::OFFSET, offset)];
+    for [of_e, of_w, of_tension] in GUESSES {
+        let preset = format!(
+            "units='SI'\n[material]\neffective_modulus={}\nwork_of_adhesion={}\nadhesion='dugdale'\n\
+             cohesive_strength={}\n[gap]\nshape='sphere'\nradius_of_curvature={radius}\n\
+             [path]\nstart_contact_radius=4e-8\n",
+            e * of_e,
+            w * of_w,
+            tension * of_tension
+        );
+        let free = truth.iter().map(|(key, _)| *key).collect();
+        let made = Made { text: text.clone(), preset, free, truth: truth.clone() };
+        let outcome = outcome(0, &made, &fitted(&made, &options(&made.free)));
+        assert!(outcome.is_trusted() && outcome.off() < 4.0, "{outcome:#?}");
     }
 }
 
