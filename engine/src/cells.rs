@@ -319,8 +319,12 @@ pub fn heads(line: &str, separator: Separator, dimensions: &[Dimension]) -> Vec<
                 let old = at.1.take();
                 let (unit, remark) = if is_remark { (old, new) } else { (new, old) };
                 at.1 = unit;
-                if let Some(factor) = remark.filter(|remark| has_factor(remark)) {
-                    at.0 = format!("{} {factor}", at.0);
+                match remark {
+                    Some(factor) if has_factor(&factor) => at.0 = format!("{} {factor}", at.0),
+                    Some(factor) if is_power_of_ten(&factor) => {
+                        at.0 = format!("{} × {factor}", at.0.trim_end())
+                    }
+                    _ => {}
                 }
             }
             (Some((_, unit)), _) => unit.push(c),
@@ -394,11 +398,14 @@ pub fn is_multiple(text: &str, is_unit: impl Fn(&str) -> bool) -> bool {
     has_digit(factor) && factor.contains(['^', '*', '·', '×', '/']) && is_unit(behind)
 }
 
-/// Whether a name has a factor in it: `Force × 1000`, `Force*10`, `Force 10^3`.
+/// Whether a name has a factor in it: `Force × 1000`, `Force*10`, `Force 10^3`, `Force /10`.
 pub fn has_factor(name: &str) -> bool {
     let (is_digit, signs) = (|c: char| c.is_ascii_digit(), ['*', '·', '×']);
     let beside = |(before, behind): (&str, &str)| {
         behind.trim_start().starts_with(is_digit) || before.trim_end().ends_with(is_digit)
     };
-    name.contains("10^") || signs.iter().any(|sign| name.split_once(*sign).is_some_and(beside))
+    let divisor = name.rsplit_once('/').map(|(_, divisor)| divisor.trim());
+    name.contains("10^")
+        || divisor.is_some_and(|divisor| divisor.starts_with(is_digit) && is_power_of_ten(divisor))
+        || signs.iter().any(|sign| name.split_once(*sign).is_some_and(beside))
 }

@@ -112,12 +112,18 @@ pub(super) fn own(preset: &Preset) -> Option<PathBuf> {
 /// Separates files with points from the preset, wherever it is named.
 ///
 /// # Errors
-/// Two presets are named.
+/// Two presets are named, or a name is that of neither a file nor a preset.
 pub(super) fn apart(paths: &[OsString]) -> Result<(Option<OsString>, Vec<PathBuf>), Failure> {
     let (presets, files): (Vec<&OsString>, Vec<&OsString>) = paths.iter().partition(|path| is_preset(path));
     if let [one, other, ..] = presets[..] {
         let [one, other] = [one, other].map(|path| show_path(Path::new(path)));
         return Err(Failure::Usage(format!("{one} and {other} are presets: files with points go with one")));
+    }
+    // A file of points has an ending or a folder: a bare name that is not there is that of a preset, misspelt.
+    let is_bare = |path: &&OsString| !Path::new(path).exists() && Path::new(path).extension().is_none();
+    let bare = files.iter().copied().find(|path| is_bare(path) && Path::new(path).components().count() == 1);
+    if let Some(name) = bare.filter(|name| !name.to_string_lossy().contains(':')) {
+        problem::store().resolve(name)?;
     }
     Ok((presets.first().map(|preset| (*preset).clone()), files.into_iter().map(PathBuf::from).collect()))
 }

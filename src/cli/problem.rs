@@ -8,7 +8,10 @@ use crate::store::stream::{self, STANDARD};
 use crate::store::{Loaded, Source, Store, StoreError};
 use clap::Args;
 use pulloff_engine::preset::called::key_called;
-use pulloff_engine::preset::{data, edge};
+use pulloff_engine::preset::{Preset, data, edge};
+use pulloff_engine::stability::COMPLIANCE;
+use pulloff_engine::sweep::axis::overrides;
+use pulloff_engine::text::quote;
 use std::ffi::{OsStr, OsString};
 use std::path::Path;
 
@@ -68,6 +71,29 @@ impl Changes {
         self.assignments.is_empty() && self.control.is_none()
     }
 
+    /// Refuses a change of what an axis over one of `axes` gives each point anew.
+    ///
+    /// # Errors
+    /// The change, which would have no effect.
+    pub fn beside<'a>(
+        &self,
+        preset: &Preset,
+        axes: impl Iterator<Item = &'a str> + Clone,
+    ) -> Result<(), Failure> {
+        for change in self.all() {
+            let typed = change.split('=').next().unwrap_or_default().trim();
+            let Ok(key) = key_called(preset, typed) else { continue };
+            let of_device = |axis: &'a str| if axis == COMPLIANCE { "path.control.stiffness" } else { axis };
+            if let Some(axis) = axes.clone().find(|axis| overrides(of_device(axis), &key)) {
+                let option = if self.assignments.contains(&change) { "--set" } else { "--control:" };
+                let key = quote(&key);
+                let what = format!("{option} {key}: the axis {axis} gives each point its own");
+                return Err(Failure::Usage(what));
+            }
+        }
+        Ok(())
+    }
+
     /// All changes as assignments.
     pub fn all(&self) -> Vec<String> {
         let control = self.control.as_ref().map(|control| format!("{CONTROL}={control}"));
@@ -114,8 +140,13 @@ impl ProblemArguments {
         self.load(console).or_else(|failure| {
             let mut alone = Self { preset: self.preset.clone(), changes: self.changes.clone() };
             alone.changes.assignments.insert(0, format!("{}=none", data::FILE));
-            // A pipe can be read only once, and then the second failure would be another.
-            if is_unused { alone.load(console).map_err(|_| failure) } else { Err(failure) }
+            // A pipe can be read only once, and then the second failure would be another. Otherwise the second one does not blame
+            // the file for what is wrong without it.
+            let is_pipe = self.preset.as_deref().is_some_and(|name| stream::is_stream(Path::new(name)));
+            match is_unused {
+                true => alone.load(console).map_err(|second| if is_pipe { failure } else { second }),
+                false => Err(failure),
+            }
         })
     }
 

@@ -203,6 +203,10 @@ fn what_does_not_use_the_points_takes_values_that_contradict_them() {
         let ended = home.run(&[command, "lens", "--set", "R=5mm"]);
         assert_eq!((ended.status, ended.err.contains("lens.csv")), (0, false), "{command}: {}", ended.err);
     }
+    // What is wrong besides is not blamed on the file.
+    let ended = home.run(&["unload", "lens", "--set", "R=1um"]);
+    let said = ended.err.contains("path.start_contact_radius") && !ended.err.contains("lens.csv");
+    assert!(ended.status == 2 && said, "{}", ended.err);
     let ended = home.run(&["plot", "lens", "--set", "R=5mm", "-o", "a.svg"]);
     assert!(ended.status == 2 && ended.err.contains("states a tip radius"), "{}", ended.err);
 }
@@ -413,6 +417,7 @@ fn what_a_person_can_mend_is_said_with_status_2() {
         ),
         (vec!["fit", "fig-9", FREE[0], FREE[1]], "a preset that names one in data.file"),
         (vec!["fit", "none.csv", "lens", FREE[0], FREE[1]], "none.csv"),
+        (vec!["fit", &path, "lense", FREE[0], FREE[1]], "no preset is called \"lense\"; did you mean lens?"),
         (
             vec!["fit", &path, "fig-9", FREE[0], FREE[1]],
             "has a unit, um, and the problem is in reduced units",
@@ -477,6 +482,34 @@ fn a_displacement_is_tried_as_a_position_where_it_does_not_describe() {
     }
     let other = home.run(&[&base[..], &["--columns", "position=1,force=2,segment=3"]].concat());
     assert_eq!(other.status, 0, "{}", other.out);
+}
+
+/// Of a heading that says what x is, the other reading is told only where the model describes it.
+#[test]
+fn an_approach_that_is_headed_as_a_position_is_told() {
+    let home = Home::new();
+    let rows = |spring: f64| {
+        (0..160_u32).map(move |i| {
+            // JKR with E* = 1 MPa, γ = 50 mJ/m² and R = 1 mm, in SI, from 100 µm of contact radius down, then apart.
+            let s = 1e-4 * (1.0 - f64::from(i) / 100.0);
+            let (delta, force) = if s > 2.8e-5 {
+                let root = (2.0 * std::f64::consts::PI * 0.05 * s / 1e6).sqrt();
+                let delta = s * s / 1e-3 - root;
+                (delta, 2e6 * (delta * s - s.powi(3) / 3e-3))
+            } else {
+                (-2.2e-6 - 1e-7 * f64::from(i - 72), 0.0)
+            };
+            let noise = 1e-6 * f64::from(i * 7 % 11) / 11.0;
+            format!("{:.6},{:.5}\n", 1e6 * (delta + force / spring), 1e6 * (force + noise))
+        })
+    };
+    for (spring, is_told) in [(f64::INFINITY, true), (300.0, false)] {
+        let text: String = rows(spring).collect();
+        home.file("p.csv", &format!("position [um],force [uN]\n{text}"));
+        let ended = home.run(&["fit", "p.csv", "lens", FREE[0], FREE[1]]);
+        let told = "x, headed \"position\", is read as the position of the device and may be the approach of the bodies";
+        assert_eq!(ended.err.contains(told), is_told, "{spring}: {}", ended.err);
+    }
 }
 
 /// The rows of the lens with the other sign of x and of the force.

@@ -51,27 +51,34 @@ pub fn fit_own(preset: &Preset, options: &Options, progress: &dyn Progress) -> R
     let share = if other.is_some() { 0.5 } else { 1.0 };
     let own = ProgressPart::new(progress, [0.0, share]);
     let mut found = fit(preset, &points, &Options { asked, ..options.clone() }, &own)?;
-    if let Some(other) = other.filter(|_| found.verdict == Verdict::DoesNotDescribe) {
+    if let Some(other) = other.filter(|_| found.verdict != Verdict::Describes && !found.reasons.is_empty()) {
         let reason =
             of_reading(preset, &other, (options, &found), &ProgressPart::new(progress, [share, 1.0]));
-        found.reasons.insert(0, reason);
+        found.reasons.splice(0..0, reason);
     }
     found.notes.splice(0..0, preset.notes_of_reading().map_err(FitError::Data)?);
     Ok(found)
 }
 
-/// That x of a fit that does not describe the points may be a position, and whether it is described if it is.
+/// That x of a fit that does not describe the points may be a position, and whether it is described if it is; of a heading that
+/// leaves nothing open only if it is, or nearly.
 fn of_reading(
     preset: &Preset,
-    OtherReading { x, meanings: [read_as, other], columns }: &OtherReading,
+    OtherReading { x, is_doubtful, meanings: [read_as, other], columns }: &OtherReading,
     (options, own): (&Options, &Fit),
     progress: &dyn Progress,
-) -> Reason {
+) -> Option<Reason> {
+    /// By how much chi squared is smaller where a heading that leaves nothing open may still be wrong.
+    const NEARER: f64 = 0.1;
     let mut preset = preset.clone();
     let options = options.without_intervals();
     let set = preset.set(COLUMNS, columns.as_str().into());
     let found = set.ok().and_then(|()| fit_own(&preset, &options, progress).ok());
     let is_described = found.as_ref().is_some_and(|found| found.verdict == Verdict::Describes);
+    let is_nearer = found.as_ref().is_some_and(|found| found.chi_squared < NEARER * own.chi_squared);
+    if !is_doubtful && !is_described && !is_nearer {
+        return None;
+    }
     let chi = |fit: &Fit| short(fit.chi_squared, 4);
     let outcome = match &found {
         _ if is_described => "As that, the model describes it".to_owned(),
@@ -85,7 +92,7 @@ fn of_reading(
     let sentence = format!(
         "{x} is read as the {read_as} and may be the {other}: --columns or data.columns {columns}. {outcome}"
     );
-    Reason { kind: "columns", sentence, value: found.map(|found| found.chi_squared) }
+    Some(Reason { kind: "columns", sentence, value: found.map(|found| found.chi_squared) })
 }
 
 /// The points of a preset's own measured curve, and which of them are used.

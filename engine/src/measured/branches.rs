@@ -11,7 +11,7 @@
 //! `sigma` finds how well the columns are known.
 
 use super::asked::{Asked, FreePart, ValueRange, signs_text};
-use super::converter::{Clipped, clipped, quantum, without_repeats};
+use super::converter::{Clipped, clipped, quantum, without_copied_parts, without_copies, without_repeats};
 pub use super::free::MeasuredBranch;
 use super::free::{OrderedBranch, as_elsewhere, branch, clear, never_pulls, one_sided};
 pub(crate) use super::noise::median;
@@ -214,6 +214,11 @@ fn without_restarts(part: &mut [MeasuredPoint]) -> Option<usize> {
     Some(back)
 }
 
+/// How many rows were left out as copies, if any.
+fn of_copies(rows: usize) -> Option<String> {
+    (rows > 0).then(|| format!("left out: {} that are an exact copy of those before", counted(rows, "row")))
+}
+
 /// Leaves out rows in contact without a contact radius where others have one.
 fn without_radius(list: &mut [OrderedBranch], of_radius: bool, notes: &mut Vec<String>) {
     let attached = || list.iter().flat_map(|(branch, _)| &branch.attached);
@@ -237,6 +242,8 @@ impl Points {
         let mut notes = Vec::new();
         let mut points = self.used(asked, &mut notes)?;
         let step = quantum(&points.iter().map(|point| point.force).collect::<Vec<_>>());
+        let copied = without_copies(&mut points);
+        notes.extend(of_copies(copied));
         let repeated = without_repeats(&mut points);
         if repeated > 0 {
             notes.push(format!("left out: {} equal to the row before", counted(repeated, "row")));
@@ -306,6 +313,7 @@ impl Points {
         // Contact radii, which are zero while apart, are never turned.
         let ordered = asked.sigma[0].is_some() || of_radius;
         let mut parts = self.parts(points, ordered, notes)?;
+        notes.extend(of_copies(without_copied_parts(&mut parts)));
         for (segment, part) in &mut parts {
             let back = without_restarts(part).filter(|_| *segment != Segment::Other);
             notes.extend(back.map(|row| {

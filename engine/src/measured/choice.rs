@@ -316,8 +316,13 @@ fn of_header(
     wanted
 }
 
-/// The column of x in words, if it is taken as an approach though nothing says that it is no position, or the reverse.
-pub(super) fn open(spec: &ColumnSpec, header: Option<&Header>, wanted: &[WantedColumn]) -> Option<String> {
+/// The column of x in words, if it may be an approach where it is taken as a position, or the reverse, and whether nothing says
+/// which. Each stage of a device is headed as a position, whatever its numbers are.
+pub(super) fn open(
+    spec: &ColumnSpec,
+    header: Option<&Header>,
+    wanted: &[WantedColumn],
+) -> Option<(String, bool)> {
     let [approach, position, deflection] =
         [ColumnRole::Approach, ColumnRole::Position, ColumnRole::Deflection]
             .map(|role| wanted.iter().find(|column| column.role == role));
@@ -330,9 +335,10 @@ pub(super) fn open(spec: &ColumnSpec, header: Option<&Header>, wanted: &[WantedC
     if !spec.0.is_empty() {
         return None;
     }
-    let Some(header) = header else { return Some("x, which has no heading,".to_owned()) };
+    let Some(header) = header else { return Some(("x, which has no heading,".to_owned(), true)) };
     let (name, _) = header.heads.get(x.at)?;
-    named(name)?.is_open.then(|| format!("x, headed \"{}\",", quote(name)))
+    let is_open = named(name)?.is_open;
+    (is_open || x.role == ColumnRole::Position).then(|| (format!("x, headed \"{}\",", quote(name)), is_open))
 }
 
 /// Gives the SI unit to columns without a unit.

@@ -1,6 +1,7 @@
 //! What a converter does to the force: steps and an end of its range; and rows that are recorded more than once.
 
 use super::points::MeasuredPoint;
+use super::role::Segment;
 
 /// Rows that repeat the row before are dropped if they make up this share of all rows.
 const REPEATED: f64 = 0.3;
@@ -77,12 +78,56 @@ pub(super) fn clipped(
     look(lo, true).or_else(|| look(hi, false))
 }
 
+/// Fewer rows may be equal by chance.
+const FEWEST: usize = 10;
+
+/// Whether two points are the same, but for their times and rows.
+fn same(a: &MeasuredPoint, b: &MeasuredPoint) -> bool {
+    let bits = |p: &MeasuredPoint| [p.x.to_bits(), p.force.to_bits(), p.radius.to_bits()];
+    bits(a) == bits(b)
+}
+
+/// Removes what repeats the rows before it as a whole, as of a record that is pasted twice; returns how many rows that were. No
+/// second measurement has the same noise.
+pub(super) fn without_copies(points: &mut Vec<MeasuredPoint>) -> usize {
+    let count = points.len();
+    let repeats = |period: &usize| {
+        let (before, behind) = (&points[..count - period], &points[*period..]);
+        before.iter().zip(behind).all(|(a, b)| same(a, b))
+    };
+    // With less than a whole copy, or all rows alike, there may be another cause.
+    let Some(period) =
+        (FEWEST..=count / 2).find(repeats).filter(|_| points.iter().any(|p| !same(p, &points[0])))
+    else {
+        return 0;
+    };
+    points.truncate(period);
+    count - period
+}
+
+/// The same of the parts of a record in each direction, and of rows within one; returns how many rows that were.
+pub(super) fn without_copied_parts(parts: &mut Vec<(Segment, Vec<MeasuredPoint>)>) -> usize {
+    let all =
+        |parts: &[(Segment, Vec<MeasuredPoint>)]| parts.iter().map(|(_, part)| part.len()).sum::<usize>();
+    let before = all(parts);
+    for (_, part) in parts.iter_mut() {
+        without_copies(part);
+    }
+    let is_copy = |a: &[MeasuredPoint], b: &[MeasuredPoint]| {
+        a.len() >= FEWEST && a.len() == b.len() && a.iter().zip(b).all(|(a, b)| same(a, b))
+    };
+    let mut kept: Vec<(Segment, Vec<MeasuredPoint>)> = Vec::new();
+    for (segment, part) in parts.drain(..) {
+        if !kept.iter().any(|(of, other)| *of == segment && is_copy(other, &part)) {
+            kept.push((segment, part));
+        }
+    }
+    *parts = kept;
+    before - all(parts)
+}
+
 /// Removes the points that repeat the one before, if there are many of them; returns how many there were.
 pub(super) fn without_repeats(points: &mut Vec<MeasuredPoint>) -> usize {
-    let same = |a: &MeasuredPoint, b: &MeasuredPoint| {
-        let bits = |p: &MeasuredPoint| [p.x.to_bits(), p.force.to_bits(), p.radius.to_bits()];
-        bits(a) == bits(b)
-    };
     let repeated = points.windows(2).filter(|pair| same(&pair[0], &pair[1])).count();
     if (repeated as f64) < REPEATED * points.len() as f64 {
         return 0;
@@ -94,6 +139,29 @@ pub(super) fn without_repeats(points: &mut Vec<MeasuredPoint>) -> usize {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_record_that_is_pasted_several_times_counts_once() {
+        let one = |i: usize| MeasuredPoint {
+            x: i as f64,
+            force: (i * i % 7) as f64,
+            radius: f64::NAN,
+            time: f64::NAN,
+            row: i + 1,
+            at: i + 1,
+        };
+        let record = |rows: std::ops::Range<usize>| -> Vec<MeasuredPoint> { rows.map(one).collect() };
+        for times in [1, 2, 3] {
+            let mut points = record(0..30).repeat(times);
+            assert_eq!((without_copies(&mut points), points.len()), (30 * (times - 1), 30));
+        }
+        // One row differs, and nothing but the force is the same.
+        let mut points = record(0..30).repeat(2);
+        points[40].force += 1e-9;
+        assert_eq!(without_copies(&mut points), 0);
+        let mut still = vec![one(3); 40];
+        assert_eq!(without_copies(&mut still), 0);
+    }
 
     #[test]
     fn steps_ends_of_the_range_and_repeated_rows_are_seen() {

@@ -78,7 +78,7 @@ pub(crate) fn variance(values: &[f64]) -> Option<f64> {
 }
 
 /// The range of the values that are numbers.
-pub(super) fn range(values: impl Iterator<Item = f64>) -> f64 {
+pub(crate) fn range(values: impl Iterator<Item = f64>) -> f64 {
     let [lo, hi] = values
         .filter(|x| x.is_finite())
         .fold([f64::INFINITY, f64::NEG_INFINITY], |[lo, hi], x| [lo.min(x), hi.max(x)]);

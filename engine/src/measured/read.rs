@@ -64,9 +64,31 @@ struct Pieces<'a> {
     notes: Vec<String>,
 }
 
-/// Text with line feeds as line ends; old files end lines with a carriage return alone.
-fn lines_of(text: Cow<'_, str>) -> Cow<'_, str> {
-    if text.contains('\r') { Cow::Owned(text.replace("\r\n", "\n").replace('\r', "\n")) } else { text }
+/// Text with line feeds as line ends, which old files end with a carriage return alone, and with the brackets, digits and units of
+/// East Asian texts, which stand in as wide a cell as a letter there, as the usual characters.
+fn plain(text: Cow<'_, str>) -> Cow<'_, str> {
+    let is_wide = |c: char| matches!(c, '\u{ff01}'..='\u{ff5e}' | '\u{3000}' | '\u{3380}'..='\u{33df}');
+    if !text.contains('\r') && !text.contains(is_wide) {
+        return text;
+    }
+    let mut plain = String::with_capacity(text.len());
+    for c in text.replace("\r\n", "\n").replace('\r', "\n").chars() {
+        // The wide form of a character follows at a fixed distance.
+        let usual = char::from_u32(u32::from(c).wrapping_sub(0xfee0))
+            .filter(|_| ('\u{ff01}'..='\u{ff5e}').contains(&c));
+        match (c, usual) {
+            (_, Some(usual)) => plain.push(usual),
+            ('\u{3000}', _) => plain.push(' '),
+            ('\u{339a}', _) => plain.push_str("nm"),
+            ('\u{339b}', _) => plain.push_str("µm"),
+            ('\u{339c}', _) => plain.push_str("mm"),
+            ('\u{339d}', _) => plain.push_str("cm"),
+            ('\u{33b2}', _) => plain.push_str("µs"),
+            ('\u{33b3}', _) => plain.push_str("ms"),
+            (other, _) => plain.push(other),
+        }
+    }
+    plain.into()
 }
 
 /// Reads the curve in `bytes`, the content of a file, with what the user says about its columns.
@@ -75,7 +97,7 @@ fn lines_of(text: Cow<'_, str>) -> Cow<'_, str> {
 /// [`CurveReadError`] with the faulty lines.
 pub fn parse(bytes: &[u8], spec: &ColumnSpec) -> Result<Measured, CurveReadError> {
     let (text, note) = decode(bytes).map_err(CurveReadError::NotText)?;
-    let text = lines_of(text);
+    let text = plain(text);
     let pieces = Pieces::of(&text)?;
     let settings = FileSettings::of(&pieces.outline.words);
     let mut measured = Measured {
@@ -124,7 +146,7 @@ pub fn parse(bytes: &[u8], spec: &ColumnSpec) -> Result<Measured, CurveReadError
 /// [`CurveReadError`] if there is no table.
 pub fn columns(bytes: &[u8]) -> Result<Vec<SeenColumn>, CurveReadError> {
     let (text, _) = decode(bytes).map_err(CurveReadError::NotText)?;
-    let text = lines_of(text);
+    let text = plain(text);
     let pieces = Pieces::of(&text)?;
     let tables = pieces.chosen();
     let Some(table) = tables.first() else { return Err(CurveReadError::Rows { rows: 0, skipped: 0 }) };

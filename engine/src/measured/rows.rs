@@ -59,8 +59,9 @@ pub struct Measured {
     pub used: Vec<UsedColumn>,
     /// Whether the user says which columns they are.
     pub is_said: bool,
-    /// The column of x, in words, if it is read as an approach and its heading may as well mean a position, or the reverse.
-    pub open: Option<String>,
+    /// The column of x, in words, if it may be an approach where it is read as a position, or the reverse, and whether its heading
+    /// may as well mean the other.
+    pub open: Option<(String, bool)>,
     /// How many rows have no number in a column that is used; they are left out.
     pub skipped: usize,
     /// What was assumed, in words.

@@ -141,7 +141,8 @@ impl Preset {
         let Some(source) = &self.data.source else { return Ok(Vec::new()) };
         let measured = source.measured(&self.data.columns)?;
         let mut notes = measured.notes.clone();
-        notes.extend(self.other_reading()?.map(|OtherReading { x, meanings: [own, other], columns }| {
+        let doubtful = self.other_reading()?.filter(|other| other.is_doubtful);
+        notes.extend(doubtful.map(|OtherReading { x, meanings: [own, other], columns, .. }| {
             format!(
                 "{x} is read as the {own}: if it is the {other}, set --columns or data.columns to {columns}; the device is at \
                  the far end of the spring"
@@ -170,7 +171,7 @@ impl Preset {
         without_unit(&measured)
     }
 
-    /// The other way to read its x, where the file leaves it open and a spring makes a difference.
+    /// The other way to read its x, where that is possible and a spring makes a difference.
     ///
     /// # Errors
     /// Why the file cannot be read, in words.
@@ -189,7 +190,7 @@ impl Preset {
         let meanings = if is_position { [meanings[1], meanings[0]] } else { meanings };
         let columns = measured.used.iter().map(|used| format!("{}={}", role(used.role).word(), used.number));
         let columns = columns.collect::<Vec<_>>().join(",");
-        Ok(measured.open.clone().map(|x| OtherReading { x, meanings, columns }))
+        Ok(measured.open.clone().map(|(x, is_doubtful)| OtherReading { x, is_doubtful, meanings, columns }))
     }
 
     /// The branches of its measured curve; `None` without one.
@@ -206,6 +207,8 @@ impl Preset {
 pub(crate) struct OtherReading {
     /// The column, in words.
     pub(crate) x: String,
+    /// Whether its heading may as well mean this.
+    pub(crate) is_doubtful: bool,
     /// What it is read as, and what else it may be.
     pub(crate) meanings: [&'static str; 2],
     /// The value of `data.columns` that reads it as that.

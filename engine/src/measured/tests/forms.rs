@@ -471,6 +471,8 @@ fn a_multiple_of_a_unit_is_not_the_unit() {
         "depth [um];Force [mN] *10",
         "depth [um];Force × 1000 (mN)",
         "depth [um];Force (×1000) [mN]",
+        "depth [um];Force [N] (1000)",
+        "depth [um];Force [mN]/10",
         "depth [0.1 um];Force [mN]",
         "depth [2 um];Force [mN]",
     ] {
@@ -489,6 +491,17 @@ fn a_multiple_of_a_unit_is_not_the_unit() {
         "depth [um];Force (PDMS) [mN]",
         "depth [um];Force [mN] (PDMS)",
     ] {
+        let measured = parse(file(header).as_bytes(), &ColumnSpec::default());
+        let used = measured.as_ref().map(|measured| measured.used.iter().all(|used| used.has_unit));
+        assert_eq!(used.map_err(ToString::to_string), Ok(true), "{header}");
+    }
+}
+
+#[test]
+fn wide_brackets_and_units_in_one_character_are_read() {
+    let file = |header: &str| format!("{header}\n{}", two(";", 1.0, 1.0));
+    for header in ["depth（µm）；Force（mN）", "depth(㎛);Force(mN)", "depth\u{3000}[µm];Ｆｏｒｃｅ [mN]"]
+    {
         let measured = parse(file(header).as_bytes(), &ColumnSpec::default());
         let used = measured.as_ref().map(|measured| measured.used.iter().all(|used| used.has_unit));
         assert_eq!(used.map_err(ToString::to_string), Ok(true), "{header}");
