@@ -26,7 +26,7 @@ mod untold;
 pub(super) use range::{of_first_pull, unseen};
 pub(super) use rate::untried;
 pub(super) use scores::BRANCHES;
-pub(super) use spring::of_spring;
+pub(super) use spring::{of_drift, of_spring};
 
 use super::fitted::Fitted;
 use super::fitted::NORMAL;

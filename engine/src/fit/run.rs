@@ -6,8 +6,8 @@ use super::determined::{Determined, determined};
 use super::fitted::{Fitted, too_small, unmoved, values};
 use super::intervals::intervals;
 use super::judge::{
-    Evidence, doubts, extent, of_first_pull, of_hidden, of_sparse, of_spring, of_unclear, reasons, unseen,
-    untried,
+    Evidence, doubts, extent, of_drift, of_first_pull, of_hidden, of_sparse, of_spring, of_unclear, reasons,
+    unseen, untried,
 };
 use super::laid::laid;
 use super::least_squares::Ending;
@@ -54,8 +54,9 @@ pub(super) fn fit_branches(
     let scatter = problem.scatter(solved);
     let what = determined(problem, solved, &scatter, options.robust);
     if what.errors.is_some() {
-        let of_spring = of_spring(problem, solved, options.robust, &ProgressPart::new(progress, [0.95, 1.0]));
-        posed.notes.extend(of_spring);
+        let progress = ProgressPart::new(progress, [0.95, 1.0]);
+        let notes = [of_spring, of_drift].map(|of| of(problem, solved, options.robust, &progress));
+        posed.notes.extend(notes.into_iter().flatten());
     }
     posed.fit(what, scatter, true, progress)
 }
@@ -311,7 +312,7 @@ fn of_alike(problem: &FitProblem, u: &[f64], alike: &[Vec<f64>], what: &Determin
 }
 
 /// Why no start leads to a curve that reaches the points.
-fn no_start(preset: &Preset) -> FitError {
+pub(super) fn no_start(preset: &Preset) -> FitError {
     match maugis(preset).filter(|maugis| *maugis > LARGEST_MAUGIS) {
         Some(maugis) => FitError::SmallRange(short(maugis, 3), LARGEST_MAUGIS),
         None => FitError::NoStart,
@@ -457,7 +458,7 @@ fn of_no_free_part(problem: &FitProblem, branches: &Branches) -> Option<String> 
     // Too few rows may not show the noise of x, and the baseline then takes up what it does.
     let is_assumed = !problem.space && noise_of(problem, branches).from[0] == Origin::Assumed;
     let unless = if is_assumed && branches.abscissa != Abscissa::Radius {
-        "; sigma of x is assumed to be small: if it is not, the errors are larger (give --sigma-x)"
+        "; sigma of x is assumed to be small: if it is not, the errors are larger (`pulloff fit --sigma-x` takes it)"
     } else {
         ""
     };

@@ -176,6 +176,37 @@ fn what_another_spring_would_give_is_known_whatever_the_noise() {
     }
 }
 
+/// A drift of the force that one branch hides moves its values as the note of a fit without it says.
+#[test]
+fn what_a_drift_of_the_force_would_do_to_one_branch_is_told() {
+    let body = Body { state: &sphere(1.0, 0.02, 1.0), compliance: 0.0, most: 1.1 };
+    let mut normal = Normal::new(3);
+    let mut both = body.samples(400);
+    both.force.iter_mut().for_each(|p| *p += 1e-3 * normal.next());
+    let starts = "if the force drifts by 1 % of its range over the rows: E* ";
+    let told = |points: &Points| {
+        let fit = found(points, &[E, W, OFFSET], "");
+        let note = fit.notes.iter().find_map(|note| note.strip_prefix(starts)).map(str::to_owned);
+        (fit.parameters[0].value, note)
+    };
+    assert_eq!(told(&both).1, None);
+    let mut one = both.clone();
+    for column in [&mut one.x, &mut one.force] {
+        column.drain(..200);
+    }
+    one.segments.as_mut().unwrap().drain(..200);
+    let (e, note) = told(&one);
+    let note = note.unwrap();
+    let per_cent: f64 = note.split(" %").next().unwrap().replace('−', "-").parse().unwrap();
+    let range = |of: &[f64]| {
+        of.iter().fold(f64::NEG_INFINITY, |a, b| a.max(*b)) - of.iter().fold(f64::INFINITY, |a, b| a.min(*b))
+    };
+    let (slope, x) = (0.01 * range(&one.force) / range(&one.x), one.x.clone());
+    one.force.iter_mut().zip(&x).for_each(|(p, x)| *p += slope * x);
+    let drifted = told(&one).0;
+    assert!((100.0 * (drifted / e - 1.0) - per_cent).abs() < 0.15, "{e} {drifted} {note}");
+}
+
 /// The force of a Hertzian contact grows from nothing: rows that touch already do not count as apart.
 #[test]
 fn the_first_rows_of_a_hertzian_contact_are_not_the_free_part() {

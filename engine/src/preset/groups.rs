@@ -8,7 +8,8 @@
 
 use super::invalid::Invalid;
 use super::model::Preset;
-use super::schema::{self, Applies, CHOOSERS, Fallback, Key, Kind, Parameter};
+use super::rows::parameter;
+use super::schema::{self, Applies, CHOOSERS, Fallback, Key, Kind, Parameter, rivals};
 use super::value::Value;
 use crate::problem::Groups;
 use crate::units::Quantity;
@@ -76,6 +77,17 @@ pub fn changed(key: &str) -> &'static [&'static str] {
         "groups.adhesion" => &["material.work_of_adhesion"],
         _ => &[],
     }
+}
+
+/// Whether two keys give the same thing, so that of two values only the later one would take effect: one key, two starts or turns,
+/// a key and a part of it, or a group and a key that it changes.
+pub fn are_rivals(one: &str, other: &str) -> bool {
+    let is_part_of = |part: &str, whole: &str| {
+        parameter(part).is_some_and(|row| row.is_part() && row.table() == Some(whole))
+    };
+    let is_changed = |group: &str, key: &str| changed(group).contains(&key);
+    let both = |is: &dyn Fn(&str, &str) -> bool| is(one, other) || is(other, one);
+    one == other || rivals(one).contains(&other) || both(&is_part_of) || both(&is_changed)
 }
 
 /// What a group changes when it is set to `x`, in this order.

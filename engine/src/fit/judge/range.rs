@@ -94,7 +94,11 @@ pub(in super::super) fn unseen(
     } else {
         format!("its error{at} is {} times its value", short(error, 2))
     };
-    let first = of_first_pull(problem, solved).map_or_else(String::new, |said| format!(" ({said})"));
+    // The error of a range that is not determined hides how far it reaches beyond the rows that are apart.
+    let late =
+        "at this value rows of the approach that are apart would be in contact: adhesion reaches less far";
+    let late = problem.is_late(u, solved.scale).then(|| late.to_owned());
+    let first = of_first_pull(problem, solved).or(late).map_or_else(String::new, |said| format!(" ({said})"));
     Some(format!(
         "{}: {why}, so the points of the curve do not show how far the adhesion reaches: hold it{first}, or set \
          material.adhesion = \"short-range\", and compare both with --model short-range,dugdale",

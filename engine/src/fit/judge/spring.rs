@@ -1,11 +1,12 @@
-//! What the fit would be with another spring.
+//! What the fit would be with another spring, or with a force that drifts.
 
 use super::super::least_squares::Ending;
 use super::super::options::letter;
-use super::super::problem::{FitProblem, Target};
+use super::super::problem::{FitProblem, FreeParameter, Target};
 use super::super::solve::{SolvedFit, solve};
 use crate::elementary::exp_m1;
 use crate::measured::Abscissa;
+use crate::measured::noise::range;
 use crate::preset::Value;
 use crate::problem::Control;
 use crate::progress::Progress;
@@ -34,48 +35,118 @@ pub(in crate::fit) fn of_spring(
     if problem.parameters.iter().any(|p| p.target == Target::Key(KEY.to_owned())) {
         return None;
     }
-    // A part of the rows gives the effect of a spring to a tenth of a per cent, if it is compared with a fit to the
-    // same part.
-    let problem = &problem.thinned(ROWS);
-    let own = solve(problem, &solved.minimum.parameters, robust, ROUNDS, progress)?.minimum.parameters;
+    let part = FitPart::of(problem, solved, robust, progress)?;
     let (mut told, mut plays) = (Vec::new(), false);
     for (factor, words) in [(1.1, "10 % larger"), (0.9, "10 % smaller")] {
-        let mut other = problem.clone();
+        let mut other = part.problem.clone();
         other.preset.set(KEY, Value::Number(factor * k)).ok()?;
-        let apart = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
-        // Of points that another spring moves off the model, the scale of the residuals may go to and fro without end.
-        let mut ends = std::iter::successors(Some((own.clone(), None)), |(from, _)| {
-            let found = solve(&other, from, robust, ROUNDS, progress)?.minimum;
-            let rests = found.ending == Ending::Converged || apart(&found.parameters, from) < UNSEEN;
-            Some((found.parameters, Some(rests)))
-        });
-        let found = ends.by_ref().take(TIMES).find(|(_, rests)| *rests == Some(true)).map(|(u, _)| u);
         // Another spring moves the points: values that stay where they were have not been fitted to it.
-        let found = found.filter(|u| problem.abscissa != Abscissa::Position || apart(u, &own) > STILL);
-        // And values that a tenth of k multiplies have run away.
-        let found = found.filter(|u| apart(u, &own) < RUN_AWAY);
+        let is_position = problem.abscissa == Abscissa::Position;
+        let found = part.moved(&other).filter(|u| !is_position || farthest(u, &part.own) > STILL);
         let words = match found {
             None => {
-                plays |= problem.abscissa == Abscissa::Position;
+                plays |= is_position;
                 format!("{words}: no fit comes to an end, so what k does to the values is not known")
             }
             Some(found) => {
-                let changes: Vec<String> = problem
-                    .parameters
-                    .iter()
-                    .enumerate()
-                    .filter(|(_, parameter)| parameter.scale.is_none())
-                    .map(|(j, parameter)| {
-                        let change = found[j] - own[j];
-                        plays |= change.abs() >= UNSEEN;
-                        let name = letter(&problem.preset, &parameter.key());
-                        format!("{name} {:+.1} %", 100.0 * exp_m1(change)).replace('-', "−")
-                    })
-                    .collect();
-                format!("{words}: {}", changes.join(", "))
+                plays |= part.change(&found) >= UNSEEN;
+                format!("{words}: {}", part.changes(&found))
             }
         };
         told.push(words);
     }
     plays.then(|| format!("with k {}", told.join("; with k ")))
+}
+
+/// What the fit would be to a force that drifts evenly with x; `None` where x does not tell the force, a tilt is free, both branches are
+/// fitted, which a drift parts, or it moves no value by what matters.
+pub(in crate::fit) fn of_drift(
+    problem: &FitProblem,
+    solved: &SolvedFit,
+    robust: bool,
+    progress: &dyn Progress,
+) -> Option<String> {
+    /// The drift over all rows, as a share of the range of the force.
+    const DRIFT: f64 = 0.01;
+    /// A smaller change of a logarithm is told by none.
+    const MATTERS: f64 = 3e-3;
+    let is_free = problem.parameters.iter().any(|p| p.target == Target::Tilt);
+    if is_free || problem.abscissa == Abscissa::Radius || problem.data.is_empty() {
+        return None;
+    }
+    let first = problem.data[0].segment;
+    if problem.data.iter().any(|datum| datum.segment != first) {
+        return None;
+    }
+    let part = FitPart::of(problem, solved, robust, progress)?;
+    let mut other = part.problem.clone();
+    let forces = range(other.data.iter().map(|datum| datum.point.force));
+    let way = range(other.data.iter().map(|datum| datum.point.x));
+    for datum in &mut other.data {
+        datum.point.force += DRIFT * forces * datum.point.x / way;
+    }
+    let found = part.moved(&other).filter(|found| part.change(found) >= MATTERS)?;
+    Some(format!(
+        "if the force drifts by 1 % of its range over the rows: {}. The errors hold no drift; a free data.tilt finds it",
+        part.changes(&found)
+    ))
+}
+
+/// A part of the rows, which gives the effect of a change to a tenth of a per cent, if it is compared with a fit to the same part.
+struct FitPart<'a> {
+    problem: FitProblem,
+    own: Vec<f64>,
+    robust: bool,
+    progress: &'a dyn Progress,
+}
+
+/// The largest difference of a value.
+fn farthest(a: &[f64], b: &[f64]) -> f64 {
+    a.iter().zip(b).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max)
+}
+
+impl<'a> FitPart<'a> {
+    fn of(
+        problem: &FitProblem,
+        solved: &SolvedFit,
+        robust: bool,
+        progress: &'a dyn Progress,
+    ) -> Option<Self> {
+        let problem = problem.thinned(ROWS);
+        let own = solve(&problem, &solved.minimum.parameters, robust, ROUNDS, progress)?.minimum.parameters;
+        Some(Self { problem, own, robust, progress })
+    }
+
+    /// Where the fit to `other` ends; `None` where it comes to no end, or its values run away.
+    fn moved(&self, other: &FitProblem) -> Option<Vec<f64>> {
+        // Of points that a change moves off the model, the scale of the residuals may go to and fro without end.
+        let mut ends = std::iter::successors(Some((self.own.clone(), None)), |(from, _)| {
+            let found = solve(other, from, self.robust, ROUNDS, self.progress)?.minimum;
+            let rests = found.ending == Ending::Converged || farthest(&found.parameters, from) < UNSEEN;
+            Some((found.parameters, Some(rests)))
+        });
+        let found = ends.by_ref().take(TIMES).find(|(_, rests)| *rests == Some(true)).map(|(u, _)| u);
+        // Values that a small change multiplies have run away.
+        found.filter(|u| farthest(u, &self.own) < RUN_AWAY)
+    }
+
+    /// The values that are positive, each with the change of its logarithm.
+    fn logarithms(&self, found: &[f64]) -> impl Iterator<Item = (&FreeParameter, f64)> {
+        let changes: Vec<f64> = found.iter().zip(&self.own).map(|(now, own)| now - own).collect();
+        self.problem.parameters.iter().zip(changes).filter(|(parameter, _)| parameter.scale.is_none())
+    }
+
+    /// The largest of these changes.
+    fn change(&self, found: &[f64]) -> f64 {
+        self.logarithms(found).map(|(_, change)| change.abs()).fold(0.0, f64::max)
+    }
+
+    /// These changes in words.
+    fn changes(&self, found: &[f64]) -> String {
+        let each = self.logarithms(found).map(|(parameter, change)| {
+            let name = letter(&self.problem.preset, &parameter.key());
+            format!("{name} {:+.1} %", 100.0 * exp_m1(change)).replace('-', "−")
+        });
+        each.collect::<Vec<_>>().join(", ")
+    }
 }
