@@ -91,6 +91,8 @@ pub fn run(arguments: &MapArguments) -> Result<ExitCode, Failure> {
             return Err(Failure::Usage(what.to_owned()));
         }
     };
+    let axes = [Some(&x), if let Ordinate::Key(y) = &y { Some(y) } else { None }];
+    arguments.problem.changes.beside(&preset, axes.into_iter().flatten().map(|axis| &*axis.key))?;
     let over = arguments.over(&preset, &x, &y, &console)?;
     let stop = StopSignal::catch()?;
     let report = MapReport::compute(&preset, x, &y, CELLS, &console.bar(Some(&stop)))?;

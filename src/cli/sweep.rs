@@ -15,7 +15,6 @@ use crate::sweep::{
 };
 use clap::{Args, Subcommand};
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
-use pulloff_engine::preset::called::key_called;
 use pulloff_engine::report::number::{short, significant};
 use pulloff_engine::sweep::axis::SweepAxis;
 use pulloff_engine::sweep::spec::Design;
@@ -331,13 +330,7 @@ impl Sweep {
         let inputs = Inputs::default().with("the spec", &self.spec);
         let inputs = loaded.preset.iter().fold(inputs, |inputs, file| inputs.with("the preset", file));
         let inputs = spec::presets(&loaded.spec).fold(inputs, |inputs, preset| inputs.with_data(&preset));
-        // The axis would silently win.
-        let changes = self.changes.all();
-        let typed = changes.iter().filter_map(|change| change.split_once('=')).map(|(key, _)| key.trim());
-        let mut keys = typed.filter_map(|key| key_called(&loaded.spec.preset, key).ok());
-        if let Some(key) = keys.find(|key| loaded.spec.axes.iter().any(|axis| axis.key == **key)) {
-            return Err(Failure::Usage(format!("--set {key}: is an axis of this sweep", key = quote(&key))));
-        }
+        self.changes.beside(&loaded.spec.preset, loaded.spec.axes.iter().map(|axis| &*axis.key))?;
         let ResultsArguments { output, replacing } = &self.results;
         let mut outputs = Outputs::beside(inputs, *replacing);
         outputs.kept(OUTPUT, output)?;

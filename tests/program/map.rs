@@ -231,6 +231,16 @@ fn refusals_name_what_is_wrong_and_keep_files() {
         (over("groups.adhesion=1..0.5"), "from a number to a larger one"),
         (over("groups.adhesion=log:0..1"), "must begin above zero"),
         (over("basis.kind=1..2"), "a range must be of a number"),
+        (over("basis.rings=10..20"), "must be a real number of the preset"),
+        (over("material.closing_work_of_adhesion=1e-3..3e-3"), "it changes nothing on a map"),
+        (
+            [over("groups.adhesion=0.01..0.02"), vec!["--set".into(), "gamma=0.003".into()]].concat(),
+            "--set material.work_of_adhesion: the axis groups.adhesion gives each point its own",
+        ),
+        (
+            [over("compliance=0..inf"), vec!["--control".into(), "force".into()]].concat(),
+            "--control: path.control: the axis compliance gives each point its own",
+        ),
         (over("gap.wavelength=1e-9..1"), "waves; a map takes at most 3000"),
         (over("gap.amplitude=nan..1"), "gap.amplitude = NaN is out of range"),
         (over("gap.amplitude=0..inf"), "gap.amplitude = inf is out of range"),
@@ -245,7 +255,15 @@ fn refusals_name_what_is_wrong_and_keep_files() {
             "a figure's in .svg, .png or .pdf",
         ),
     ];
-    for (arguments, words) in cases {
+    // Of two axes that give the same value only one would count.
+    let twice = [
+        ["gap.amplitude=1e-4..4e-3", "groups.amplitude_over_wavelength=0.01..0.1"],
+        ["material.work_of_adhesion=1e-3..4e-3", "groups.adhesion=0.01..0.1"],
+        ["gap.wavelength=0.04..0.06", "groups.wavelength_over_radius=0.04..0.06"],
+        ["compliance=0..10", "path.control.stiffness=0.1..1"],
+    ]
+    .map(|[x, y]| (["map", "--x-key", x, "--y-key", y].map(str::to_owned).to_vec(), "give the same value"));
+    for (arguments, words) in cases.into_iter().chain(twice) {
         let arguments: Vec<&str> = arguments.iter().map(String::as_str).collect();
         let output = pulloff(home.path(), &arguments);
         let said = String::from_utf8_lossy(&output.stderr).into_owned();

@@ -307,7 +307,7 @@ fn what_is_not_whole_is_no_success() {
     }
     home.refused(
         &words("sweep s.toml -o x.csv --set material.work_of_adhesion=1"),
-        &["is an axis of this sweep"],
+        &["gives each point its own"],
     );
 }
 

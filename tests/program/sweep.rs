@@ -274,6 +274,38 @@ values = [200, 200, 200, 60]
     );
 }
 
+/// A control names a spring with its stiffness, so that an axis of its own would win; another shape has numbers of its own.
+#[test]
+fn axes_that_give_one_value_are_refused_and_none_is_invented() {
+    let home = Sweeps::new();
+    let axes = [
+        "key = 'path.control'\nvalues = ['force', 'stiffness=5']",
+        "key = 'path.control.stiffness'\nvalues = [0.1, 1]",
+    ];
+    for order in [[0, 1], [1, 0]] {
+        let [one, other] = order.map(|i| format!("[[axis]]\n{}\n", axes[i]));
+        home.file("s.toml", &format!("preset = 'wavy-sphere'\nquantities = ['snaps']\n{one}{other}"));
+        home.refused(&["sweep", "s.toml", "-o", "r.csv"], "conflicts with the axis path.control");
+    }
+    let shapes = |set: &str| {
+        let axis = "[[axis]]\nkey = 'gap.shape'\nvalues = ['sphere', 'cone']\n";
+        home.file(
+            "s.toml",
+            &format!("preset = 'wavy-sphere'\nquantities = ['last_contact_force']\n{axis}{set}"),
+        );
+        home.sweep("s.toml", "r.csv", &["--overwrite"]);
+        home.columns("r.csv", &["last_contact_force", "error"])
+    };
+    let alone = shapes("");
+    assert_eq!((&*alone[0][1], &*alone[1][0]), ("", ""));
+    assert!(alone[1][1].starts_with("refused value: gap.slope is missing"), "{alone:?}");
+    let given = shapes("[[axis]]\nkey = 'gap.slope'\nvalues = [0.2]\n");
+    let force = |row: &[String]| row[0].parse::<f64>().unwrap();
+    let cone = home.0.json(&["unload", "wavy-sphere", "--set", "gap.shape=cone", "--set", "gap.slope=0.2"]);
+    let events = cone["events"].as_array().unwrap();
+    assert_eq!(force(&given[1]), events.last().unwrap()["before"]["force"].as_f64().unwrap());
+}
+
 #[test]
 fn a_sweep_goes_on_from_any_byte() {
     let home = Sweeps::new();

@@ -176,16 +176,17 @@ impl Shape {
     /// What was changed in the gap without the user asking for it, in words, with numbers as `units` show them.
     pub fn notes(&self, units: &UnitSystem) -> Vec<String> {
         match self {
-            Self::Formula(typed) => typed
-                .shift()
-                .map(|shift| {
+            Self::Formula(typed) => {
+                let flat = || "the formula has no r, the radius: the gap is flat".to_owned();
+                let mut notes: Vec<String> = (!typed.formula().has_radius()).then(flat).into_iter().collect();
+                notes.extend(typed.shift().filter(|_| notes.is_empty()).map(|shift| {
                     format!(
                         "the formula is {} on the axis: this is subtracted, since the gap is zero there",
                         said(units, Quantity::Length, shift)
                     )
-                })
-                .into_iter()
-                .collect(),
+                }));
+                notes
+            }
             Self::Profile(measured) => {
                 let rows = measured.rows();
                 let mut notes = rows.notes.clone();

@@ -10,7 +10,9 @@ use crate::disc::blend::Blend;
 use crate::disc::table::KeptTables;
 use crate::disc::{ExactBasis, Panels, Table, TableError, waves};
 use crate::gap::{Form, Gap, Shape, Wave};
-use crate::preset::{Invalid, Preset};
+use crate::preset::groups::are_rivals;
+use crate::preset::schema::{TURN_KEYS, table_of};
+use crate::preset::{Invalid, Preset, edge};
 use crate::problem::{Control, Reduced, Start, Units};
 use crate::progress::{Stopped, Unwatched};
 use crate::quasistatic::monotone::weighted;
@@ -98,8 +100,13 @@ pub enum FamilyError {
     #[error(transparent)]
     Stopped(#[from] Stopped),
     /// The key holds no number.
-    #[error("{0}: an axis of a map must be a number of the preset, a group, or compliance")]
+    #[error("{0}: an axis of a map must be a real number of the preset, a group, or compliance")]
     NoNumber(String),
+    /// The key changes no state of the family.
+    #[error(
+        "{0}: it changes nothing on a map, whose states are the equilibria of one disc with an opening edge"
+    )]
+    Blind(String),
     /// The gap is too fine at an end of an axis.
     #[error(
         "{axis}: at {value:?} the disc at the start holds {count} waves; a map takes at most {MOST_FEATURES}"
@@ -112,11 +119,13 @@ pub enum FamilyError {
         /// How many waves, or features, the disc holds.
         count: f64,
     },
-    /// Both axes are the same.
-    #[error("{0}: the two axes of a map must be different keys")]
-    Twice(String),
+    /// Both axes give the same thing.
+    #[error("{0} and {1} give the same value: the two axes of a map must be different keys")]
+    Rivals(String, String),
 }
 
+/// The key of the device's stiffness.
+const STIFFNESS: &str = "path.control.stiffness";
 /// Most waves, or other features of the gap, in the disc at the start: with more, a map would take minutes.
 const MOST_FEATURES: f64 = 3000.0;
 
@@ -169,8 +178,11 @@ impl Family {
     /// [`FamilyError`].
     pub fn new(preset: &Preset, axes: Vec<MapAxis>) -> Result<Self, FamilyError> {
         for (k, axis) in axes.iter().enumerate() {
-            if axes[..k].iter().any(|other| other.key == axis.key) {
-                return Err(FamilyError::Twice(axis.key.clone()));
+            // The compliance is that of the device, 1/k.
+            let of_device = |key: &str| if key == COMPLIANCE { STIFFNESS } else { key }.to_owned();
+            let are_rivals = |other: &&MapAxis| are_rivals(&of_device(&other.key), &of_device(&axis.key));
+            if let Some(other) = axes[..k].iter().find(are_rivals) {
+                return Err(FamilyError::Rivals(other.key.clone(), axis.key.clone()));
             }
             let number = |preset: &Preset| {
                 preset.row(&axis.key).is_some_and(|row| row.kind.is_number())
@@ -178,8 +190,16 @@ impl Family {
             };
             if axis.key != COMPLIANCE && !number(preset) {
                 // An unknown key is reported as such, with the nearest name.
-                preset.clone().set(&axis.key, 1.0.into())?;
+                if preset.row(&axis.key).is_none() {
+                    preset.clone().set(&axis.key, 1.0.into())?;
+                }
                 return Err(FamilyError::NoNumber(axis.key.clone()));
+            }
+            let is_blind = |key: &str| {
+                edge::KEYS.contains(&key) || TURN_KEYS.contains(&key) || table_of(key) == Some("data")
+            };
+            if is_blind(&axis.key) {
+                return Err(FamilyError::Blind(axis.key.clone()));
             }
             if axis.key != COMPLIANCE {
                 for end in axis.range {

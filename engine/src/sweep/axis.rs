@@ -5,8 +5,7 @@ use super::document::{SpecEntry, SpecError, SpecSection};
 use crate::elementary::{cos, ln, pow};
 use crate::gap::shapes::split_mix::SplitMix64;
 use crate::preset::called::key_called;
-use crate::preset::rows::parameter;
-use crate::preset::schema::{Parameter, rivals};
+use crate::preset::schema::Parameter;
 use crate::preset::{Invalid, Preset, Value, groups, model};
 use crate::problem::Control;
 use crate::report::number::exact;
@@ -247,25 +246,8 @@ impl Distribution {
 
 /// Whether an axis over `axis` overrides, in every row, the value that an assignment gives to `key`.
 pub fn overrides(axis: &str, key: &str) -> bool {
-    let is_part_of = |part: &str, whole: &str| {
-        parameter(part).is_some_and(|row| row.is_part() && row.table() == Some(whole))
-    };
-    axis == key
-        || rivals(axis).contains(&key)
-        || is_part_of(axis, key)
-        || is_part_of(key, axis)
-        || groups::changed(axis).contains(&key)
-        || groups::changed(key) == [axis]
-}
-
-/// The key in `before` that sets the same thing as `key`: the key itself, another start or turn, of which only the
-/// later one would take effect, or a group that changes the other.
-pub fn rival<'a>(key: &str, before: impl IntoIterator<Item = &'a str>) -> Option<&'a str> {
-    let changes = |group: &str, key: &str| groups::changed(group).contains(&key);
-    let is_rival = |other: &&str| {
-        *other == key || rivals(key).contains(other) || changes(key, other) || changes(other, key)
-    };
-    before.into_iter().find(is_rival)
+    // A group that changes more than the axis keeps the rest of what it does.
+    groups::are_rivals(axis, key) && (!groups::changed(key).contains(&axis) || groups::changed(key) == [axis])
 }
 
 /// Reads the values of one key.

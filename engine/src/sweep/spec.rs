@@ -1,7 +1,7 @@
 //! The spec of a sweep: TOML text → preset, axes, quantities, and the values of each row.
 
 use super::MOST_ROWS;
-use super::axis::{AxisValues, Distribution, SweepAxis, overrides, rival};
+use super::axis::{AxisValues, Distribution, SweepAxis, overrides};
 use super::document::{SpecEntry, SpecError, SpecSection, SpecText};
 use super::ensemble::MEMBERS;
 use super::fault::Fault;
@@ -9,8 +9,8 @@ use super::measure::{MeasuredQuantities, measure};
 use super::quantity::{QuantityColumn, USUAL};
 use crate::gap::shapes::split_mix::SplitMix64;
 use crate::preset::called::key_called;
-use crate::preset::schema::CHOOSERS;
-use crate::preset::{Preset, Value};
+use crate::preset::schema::{CHOOSERS, Fallback};
+use crate::preset::{Invalid, Preset, Value, groups};
 use crate::problem::Begin;
 use crate::progress::Progress;
 use crate::text::{closest, quote};
@@ -112,7 +112,9 @@ impl Spec {
         let mut read: Vec<SweepAxis> = Vec::new();
         for table in &tables {
             let axis = SweepAxis::read(table, &preset, fixed)?;
-            if let Some(other) = rival(&axis.key, read.iter().map(|axis| &*axis.key)) {
+            if let Some(other) =
+                read.iter().map(|other| &*other.key).find(|other| groups::are_rivals(&axis.key, other))
+            {
                 return Err(table.fault(&format!("the axis {} conflicts with the axis {other}", axis.key)));
             }
             if let Some((entry, key)) = assigned.iter().find(|(_, key)| overrides(&axis.key, key)) {
@@ -168,7 +170,20 @@ impl Spec {
         let mut preset = self.preset.clone();
         let keys = self.axes.iter().map(|axis| &*axis.key);
         preset.set_all(keys.zip(self.values(row))).map_err(|invalid| Fault::of_value(&invalid))?;
-        Ok(preset)
+        self.brought(&preset).map_or(Ok(preset), |invalid| Err(Fault::of_value(&invalid)))
+    }
+
+    /// A value without a default in a row's preset that nobody gave: another shape brings those that it needs.
+    fn brought(&self, preset: &Preset) -> Option<Invalid> {
+        if !self.axes.iter().any(|axis| CHOOSERS.contains(&&*axis.key)) {
+            return None;
+        }
+        let is_given = |key: &str| {
+            self.preset.get(key).is_some() || self.axes.iter().any(|axis| overrides(&axis.key, key))
+        };
+        let mut values = preset.values().into_iter();
+        let brought = values.find(|(row, _)| row.fallback == Fallback::Required && !is_given(&row.key));
+        brought.map(|(row, _)| Invalid::Missing { key: row.key.clone(), allowed: row.allowed() })
     }
 
     /// The quantities of a row; `None` when `progress` said stop. Whatever goes wrong is a fault of the row.

@@ -39,6 +39,7 @@ pub use typed::{FormulaParameter, TypedError, TypedGap};
 use crate::expression::Program;
 use crate::expression::error::NAME;
 use crate::expression::grammar;
+use crate::expression::program::Op;
 use std::fmt;
 use std::str::FromStr;
 use thiserror::Error;
@@ -95,6 +96,11 @@ impl Formula {
     /// The names of the parameters, in order of first appearance.
     pub fn parameters(&self) -> &[String] {
         &self.program.parameters
+    }
+
+    /// Whether r occurs in it.
+    pub fn has_radius(&self) -> bool {
+        self.program.ops.contains(&Op::Radius)
     }
 
     /// The formula with these values for its parameters, in any order and any consistent units.

@@ -70,7 +70,8 @@ impl ProfileRows {
 
 impl PartialEq for ProfileRows {
     fn eq(&self, other: &Self) -> bool {
-        (&self.name, &self.radii, &self.gaps) == (&other.name, &other.radii, &other.gaps)
+        (&self.name, &self.radii, &self.gaps, &self.unit)
+            == (&other.name, &other.radii, &other.gaps, &other.unit)
     }
 }
 
