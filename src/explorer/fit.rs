@@ -22,14 +22,20 @@ pub(super) fn mark(model: &mut Model) -> Vec<Effect> {
     let mut preset = model.preset.clone();
     let is_it = |name: &&str| named(&preset, name).as_deref() == Some(&*row.key);
     let mut keys: Vec<String> = preset.data.free().filter(|name| !is_it(name)).map(str::to_owned).collect();
-    if keys.len() == preset.data.free().count() {
+    let is_freed = keys.len() == preset.data.free().count();
+    if is_freed {
         if let Some(why) = not_fitted(&preset, &row.key) {
             return model.refuse(why);
         }
         keys.push(row.key.to_string());
     }
     match preset.set(data::FREE, Value::Text(keys.join(","))) {
-        Ok(()) => change(model, preset),
+        Ok(()) => {
+            let effects = change(model, preset);
+            let does = if is_freed { "is free: a fit may change it" } else { "is held in a fit" };
+            model.tell(Level::Info, format!("{} {does}", row.label));
+            effects
+        }
         Err(invalid) => model.refuse(invalid.to_string()),
     }
 }

@@ -286,8 +286,12 @@ fn limit_hint(model: &Model, node: &Node) -> String {
     };
     let wavelength = node.setting.reduced.gap.wavelength();
     let wave = ahead.after.and_then(|after| wave_index(after.contact_radius, wavelength));
+    let outer = node.state.contact_radius;
     let lands = match (ahead.after, wave) {
         (None, _) => "lets the bodies come apart".to_owned(),
+        (Some(_), Some(wave)) if node.has_rings() && wave_index(outer, wavelength) == Some(wave) => {
+            "lets an inner edge jump".to_owned()
+        }
         (Some(_), Some(wave)) => format!("lets the edge snap to crest {wave}"),
         (Some(after), None) => format!("lets the edge snap to s {}", length(node, after.contact_radius)),
     };

@@ -535,11 +535,11 @@ mod tests {
         // Slopes of the waves, 2πA/λ, are told where they are not small.
         let told = |data: &StudyData| {
             let notes = study::of(data, &preset, Axes::Reduced).notes;
-            notes.into_iter().find(|note| note.contains("not small beside 1"))
+            notes.into_iter().find(|note| note.starts_with("steep at "))
         };
         assert_eq!(told(&data), None);
         let steep = told(&of("gap.amplitude", 0.003)).unwrap();
-        assert!(steep.starts_with("slopes up to 1.") && steep.ends_with("at 1 of 4"), "{steep}");
+        assert!(steep.starts_with("steep at 1 of 4: slopes up to 1."), "{steep}");
         // One P_c for all values.
         let data = of("gap.amplitude", 0.0025);
         assert_eq!(study::of(&data, &preset, Axes::Reduced).y.title(), "largest pull (P/Pc)");

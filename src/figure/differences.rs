@@ -72,7 +72,10 @@ pub fn figure(subject: &Subject<'_>) -> Figure {
     figure.bounds = Bounds::of(figure.lines.iter().flat_map(|line| line.points.iter().copied()));
     if let Some(at) = here {
         pinned.append(&mut said);
-        figure.notes.insert(0, format!("at @, equal s: {}", pinned.join(", ")));
+        if let Some(first) = pinned.first_mut() {
+            *first = format!("at @, equal s: {first}");
+        }
+        figure.notes.splice(0..0, pinned);
         figure.marks.push(Mark { sign: Sign::Walker, at });
     }
     figure

@@ -102,17 +102,15 @@ pub fn on_nearest_line(figure: &Figure, at: (f64, f64)) -> Option<((f64, f64), &
     crossings.min_by(|(a, _), (b, _)| (a.1 - at.1).abs().total_cmp(&(b.1 - at.1).abs()))
 }
 
-/// The state nearest to `at` in a window with these bounds, limit points and landings first; `None` if the view shows
-/// no states.
+/// The state beside `at` on the curve that passes nearest, in a window with these bounds, limit points and landings first; `None`
+/// if the view shows no states.
 pub fn nearest(subject: &Subject<'_>, view: View, bounds: &Bounds, at: (f64, f64)) -> Option<NearestState> {
     if !view.is_curve() {
         return None;
     }
     let scale = subject.scale();
-    let away = |(x, y): (f64, f64)| {
-        let share = |[lo, hi]: [f64; 2], by: f64| by / (hi - lo);
-        share(bounds.x, x - at.0).hypot(share(bounds.y, y - at.1))
-    };
+    let share = |[lo, hi]: [f64; 2], by: f64| by / (hi - lo);
+    let away = |(x, y): (f64, f64)| share(bounds.x, x - at.0).hypot(share(bounds.y, y - at.1));
     let by_distance = |a: &NearestState, b: &NearestState| away(a.at).total_cmp(&away(b.at));
     let state = |scale: Scale<'_>, [approach, force, contact_radius]: [f64; 3], what| NearestState {
         at: scale.place(view, [approach, force, contact_radius]),
@@ -123,13 +121,39 @@ pub fn nearest(subject: &Subject<'_>, view: View, bounds: &Bounds, at: (f64, f64
     };
     let marks = marks(subject.curve).into_iter().map(|(quantities, what)| state(scale, quantities, what));
     let mark = marks.filter(|mark| away(mark.at) <= NEAR).min_by(by_distance);
+    if mark.is_some() {
+        return mark;
+    }
     let own = subject.curve.points.iter();
     let own = own.map(|point| state(scale, place(point), What::Curve { stable: point.stable }));
-    let pinned = subject.pins.iter().flat_map(|pin| {
+    let pinned = subject.pins.iter().map(|pin| {
         let scale = pinned_scale(subject, pin);
-        pin.curve.points.iter().map(move |point| state(scale, place(point), What::Pin(pin.number)))
+        let points = pin.curve.points.iter();
+        points.map(|point| state(scale, place(point), What::Pin(pin.number))).collect()
     });
-    mark.or_else(|| own.chain(pinned).min_by(by_distance))
+    // The curve that passes nearest need not be that of the nearest state.
+    let passing = |states: Vec<NearestState>| {
+        let pairs = states.windows(2).map(|pair| (pair[0], pair[1]));
+        let alone = states.first().map(|one| (*one, *one));
+        let beside = |(one, other): (NearestState, NearestState)| {
+            let nearer = if away(one.at) <= away(other.at) { one } else { other };
+            let [a, b] =
+                [one.at, other.at].map(|(x, y)| [share(bounds.x, x - at.0), share(bounds.y, y - at.1)]);
+            (from_origin(a, b), nearer)
+        };
+        pairs.chain(alone).map(beside).min_by(|a, b| a.0.total_cmp(&b.0))
+    };
+    let nearest = std::iter::once(own.collect()).chain(pinned).filter_map(passing);
+    nearest.min_by(|a, b| a.0.total_cmp(&b.0)).map(|(_, state)| state)
+}
+
+/// How far the straight line from `a` to `b` is from the origin.
+fn from_origin(a: [f64; 2], b: [f64; 2]) -> f64 {
+    let along = [b[0] - a[0], b[1] - a[1]];
+    let length = along[0] * along[0] + along[1] * along[1];
+    let share = -(a[0] * along[0] + a[1] * along[1]) / length;
+    let share = if share.is_finite() { share.clamp(0.0, 1.0) } else { 0.0 };
+    (a[0] + share * along[0]).hypot(a[1] + share * along[1])
 }
 
 /// The limit points of a curve under every control shown, and the landings of its events, as δ, P and s.

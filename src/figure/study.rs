@@ -150,7 +150,7 @@ fn notes(data: &StudyData, without: usize) -> impl Iterator<Item = String> {
         is_unchecked.then(|| "one disc, not checked".to_owned()),
         data.steep.map(|(at, slope)| {
             let slope = significant(slope, 2);
-            format!("slopes up to {slope}, not small beside 1, at {at} of {count}")
+            format!("steep at {at} of {count}: slopes up to {slope}")
         }),
         (missing > 0).then(|| format!("{missing} without a value: the cross-hair says why")),
     ];

@@ -380,6 +380,15 @@ fn near_a_limit_point_a_landing_or_a_pin_the_cross_hair_says_so() {
     let pinned = &subject.pins[0].curve.points[30];
     let quantities = [pinned.approach, pinned.force, pinned.contact_radius];
     assert_eq!(at(quantities), What::Pin(1));
+    // Halfway between two states of this curve, the curve counts, though a state of the pinned one may be nearer.
+    let count = subject.curve.points.len();
+    for pair in subject.curve.points.windows(2).take(count / 8) {
+        let [(x, y), (u, v)] = [&pair[0], &pair[1]]
+            .map(|point| scale.place(view, [point.approach, point.force, point.contact_radius]));
+        let close = Bounds { x: [x - 0.02, x + 0.02], y: [y - 0.5, y + 0.5] };
+        let found = nearest(&subject, view, &close, (0.5 * (x + u), 0.5 * (y + v))).unwrap();
+        assert!(!matches!(found.what, What::Pin(_)), "{found:?}");
+    }
     // From far away the nearest point of a curve counts, not a mark.
     let far = (bounds.x[0], bounds.y[1]);
     let found = nearest(&subject, view, &bounds, far).unwrap();

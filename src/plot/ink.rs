@@ -93,8 +93,8 @@ pub fn stamp(sign: Sign) -> Stamp {
         Sign::Passing(_) => stamp(MarkerShape::Pentagon, BLACK, 2.4, "event without a limit point"),
         // The name used in the tables of the figures, which programs read.
         Sign::LastContact(_) => stamp(MarkerShape::Cross, VERMILLION, 2.8, "last contact"),
-        Sign::LargestPull => stamp(MarkerShape::Triangle, BLACK, 2.4, "A, largest pull"),
-        Sign::Farthest => stamp(MarkerShape::Diamond, BLACK, 2.4, "B, farthest"),
+        Sign::LargestPull => stamp(MarkerShape::Triangle, BLACK, 3.8, "A, largest pull"),
+        Sign::Farthest => stamp(MarkerShape::Diamond, BLACK, 3.8, "B, farthest"),
         Sign::Landing => stamp(MarkerShape::Circle, GREEN, 2.2, "landing"),
         Sign::Touch => stamp(MarkerShape::Pentagon, BLACK, 2.4, "touch"),
         Sign::Turn => stamp(MarkerShape::Square, BLACK, 2.2, "turn"),
@@ -114,7 +114,7 @@ pub fn stamp(sign: Sign) -> Stamp {
             stamp(MarkerShape::Circle, GREEN, 1.1, "measured approach")
         }
         Sign::Measured { loading: true, apart: true } => {
-            stamp(MarkerShape::Plus, GREEN, 1.3, "measured approach, apart")
+            stamp(MarkerShape::Plus, GREEN, 1.7, "measured approach, apart")
         }
         Sign::Measured { loading: false, apart: false } => {
             stamp(MarkerShape::Square, GREY, 1.1, "measured retraction")

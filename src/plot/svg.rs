@@ -341,11 +341,13 @@ fn plots(figure: &Figure) -> Vec<Plot> {
     let is_measured = |mark: &&Mark| matches!(mark.sign, Sign::Measured { .. });
     // Numbers of snaps are written, not drawn as marks.
     let stamped = figure.marks.iter().filter(|mark| !matches!(mark.sign, Sign::Snaps(_)));
-    let (behind, above): (Vec<Mark>, Vec<Mark>) = stamped.partition(is_measured);
-    // The small marks of the other control are drawn over those of the current one, so that both are visible where they meet.
-    let (others_limits, above): (Vec<Mark>, Vec<Mark>) =
-        above.into_iter().partition(|mark| matches!(mark.sign, Sign::OtherLimit(_)));
-    let above: Vec<Mark> = above.into_iter().chain(others_limits).collect();
+    let (behind, mut above): (Vec<Mark>, Vec<Mark>) = stamped.partition(is_measured);
+    // The smaller a mark, the later it is drawn, so that all are visible where they meet: A and B are limit points too.
+    above.sort_by_key(|mark| match mark.sign {
+        Sign::LargestPull | Sign::Farthest => 0,
+        Sign::OtherLimit(_) => 2,
+        _ => 1,
+    });
     let of = |some: &[Mark]| some.chunk_by(|a, b| a.sign == b.sign).filter_map(marks).collect::<Vec<_>>();
     let mut plots: Vec<Drawn> = of(&behind);
     plots.extend(others.into_iter().chain(exact).flat_map(line));

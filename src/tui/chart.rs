@@ -106,7 +106,7 @@ impl Chart<'_> {
             buffer.set_line(plot.x, y, &line, plot.width);
         }
         if self.has_note_row(area, inner) {
-            let note = theme.whole_words(&self.note(), usize::from(inner.width - 2));
+            let note = self.note_within(usize::from(inner.width - 2));
             buffer.set_string(inner.x + 1, plot.y - 1, note, theme.dim());
         }
         for (at, region) in self.figure.areas.iter().enumerate() {
@@ -127,6 +127,18 @@ impl Chart<'_> {
     /// The notes of the figure, shown at the right end of the title's line if they fit.
     fn note(&self) -> String {
         self.theme.text(&self.figure.notes.join(", "))
+    }
+
+    /// As many whole notes as fit, and how many do not, or the words of the first: half a note may lack its number.
+    fn note_within(&self, room: usize) -> String {
+        let notes = &self.figure.notes;
+        let within = |count: usize| {
+            let left = notes.len() - count;
+            let rest = if left > 0 { format!(", +{left}") } else { String::new() };
+            self.theme.text(&format!("{}{rest}", notes[..count].join(", ")))
+        };
+        let fits = (1..=notes.len()).rev().map(within).find(|text| text.chars().count() <= room);
+        fits.unwrap_or_else(|| self.theme.whole_words(&self.note(), room))
     }
 
     /// The width of the title with the note.

@@ -285,6 +285,7 @@ fn free_keys_are_marked_in_the_panel_and_what_is_not_determined_is_not_taken() {
     let free = |session: &Session| session.model.preset.data.free().map(str::to_owned).collect::<Vec<_>>();
     select(&mut session, "gap.radius_of_curvature");
     assert_eq!(free(&session), ["E*", "gamma", "data.offset", "gap.radius_of_curvature"]);
+    assert_eq!(session.status(), "R is free: a fit may change it");
     let before = session.model.preset.clone();
     session.does(Id::Fit);
     assert!(

@@ -5,17 +5,19 @@ use crate::explorer::branches;
 use crate::explorer::command::Command;
 use crate::explorer::export::{Export, file_for};
 use crate::explorer::look::NO_ENVELOPE;
-use crate::explorer::map_axes::CURVES;
+use crate::explorer::map_axes::{CURVES, key_of};
 use crate::explorer::model::Model;
+use crate::explorer::pins::{self, Compared, Pin};
+use crate::explorer::reach;
 use crate::explorer::view::{Home, Overlay, View};
-use crate::explorer::{pins, reach};
 use crate::store::shipped::{self, SHIPPED};
 use pulloff_engine::preset::called::settable;
 use pulloff_engine::preset::groups::GROUPS;
 use pulloff_engine::preset::measured::SHIPPED_DATA;
 use pulloff_engine::preset::schema::{AUTO, Kind, NONE};
 use pulloff_engine::preset::{Parameter, Preset};
-use pulloff_engine::report::number::{significant, with_unit};
+use pulloff_engine::report::PathReport;
+use pulloff_engine::report::number::{loss, significant, with_unit};
 use pulloff_engine::stability::COMPLIANCE;
 use pulloff_engine::sweep::{QUANTITIES, SweepQuantity};
 use pulloff_engine::units::Quantity;
@@ -89,7 +91,10 @@ pub(in crate::explorer) fn quantities(typing: &Typing<'_>) -> Vec<Offer> {
     all.map(|column| {
         let name = column.name();
         let is_here = name == typing.model.studied.name();
-        Offer { is_here, ..Offer::new(name, column.quantity.meaning) }
+        // Its name ends with the control, unless that is the preset's own.
+        let control = name.strip_prefix(column.quantity.name).and_then(|rest| rest.strip_prefix('_'));
+        let under = control.map_or_else(String::new, |control| format!(" (under {control})"));
+        Offer { is_here, ..Offer::new(name, format!("{}{under}", column.quantity.meaning)) }
     })
     .collect()
 }
@@ -126,7 +131,21 @@ pub(in crate::explorer) fn theories(typing: &Typing<'_>) -> Vec<Offer> {
 pub(in crate::explorer) fn pins_of(typing: &Typing<'_>) -> Vec<Offer> {
     let model = typing.model;
     let pins = model.pins.all().iter();
-    let numbered = pins.map(|pin| Offer::new(pins::letter(pin.number), pin.name(&model.preset)));
+    let outcome = |preset: &Preset, path: &PathReport| {
+        let totals = &path.totals;
+        let pull = model.force_in_words(preset, totals.pull()?.force, 4);
+        let lost = totals.dissipated.unwrap_or(totals.dissipated_before_last_contact);
+        let fall = if totals.dissipated.is_none() { "+" } else { "" };
+        let lost = with_unit(&preset.units, Quantity::Energy, lost, false, loss);
+        Some(format!("A {pull}, lost {lost}{fall}"))
+    };
+    let says = |pin: &Pin| {
+        let name = pin.name(&model.preset);
+        let outcomes = Compared::of(model, pin)
+            .and_then(|paths| Some((outcome(pin.preset(), paths.pin)?, outcome(&model.preset, paths.now)?)));
+        outcomes.map_or(name.clone(), |(of_pin, here)| format!("{name}: {of_pin} (here {here})"))
+    };
+    let numbered = pins.map(|pin| Offer::new(pins::letter(pin.number), says(pin)));
     // A letter means a pin, and neither a word that begins with it nor a description.
     let is_letter = typing.word.chars().count() == 1;
     let is_meant = |offer: &Offer| !is_letter || offer.word.eq_ignore_ascii_case(typing.word);
@@ -209,10 +228,11 @@ pub(in crate::explorer) fn axes_of(typing: &Typing<'_>) -> Vec<Offer> {
     if typing.words.len() > 1 {
         return Vec::new();
     }
+    let other = |offer: &Offer| typing.words.iter().all(|word| key_of(word) != offer.word);
     let keys = numbers(preset).into_iter();
     let groups = GROUPS.iter().map(|row| Offer::new(&*row.key, &*row.meaning));
     let curves = if typing.words.is_empty() { Vec::new() } else { words(CURVES.map(|(name, _)| name)) };
-    keys.chain(groups).chain(words([COMPLIANCE])).chain(curves).collect()
+    keys.chain(groups).chain(words([COMPLIANCE])).chain(curves).filter(other).collect()
 }
 
 /// The keys of the preset that have numbers.

@@ -16,7 +16,7 @@ impl App {
             Source::File(_) | Source::Piped { .. } => String::new(),
         };
         let prompt = |with_data| {
-            let note = "lower-case letters, digits, - and _";
+            let note = "lower-case letters, digits, - and _; walk and pins stay in the session";
             Prompt::new("Save the preset as", note, suggestion.clone(), Purpose::Name { with_data })
         };
         if self.has_data() {

@@ -56,7 +56,7 @@ const SHORT: &[(&str, &str)] = &[
     ("λ²/AR", "above 8.58 the gap rises all the way out; below, it has valleys around the axis"),
     ("α", "Johnson's √(2γλ/(π²E*A²)): large where adhesion flattens the waves"),
     ("μ", "Tabor's number: from 5 up the adhesion acts at the edge only, as computed here"),
-    ("snap in", "the edge jumps outward as the bodies are pressed together; a snap jumps inward"),
+    ("snap in", "an edge jumps and the contact grows; in a snap it jumps inward"),
     ("+13 !7", "below the last line of the log: events, and inadmissible parts, that are out of sight"),
     ("crest 8", "the crest nearest to the edge, counted from the axis; 8>7: from one to the next"),
     ("digits 13", "of force and contact radius, how many can be trusted, by the state's own check"),

@@ -1,7 +1,7 @@
 //! The outcome of the path: A, B, the last contact, the snaps and their losses; with a pin, its numbers beside them.
 
 use super::parts::{is_selected, pair, panel};
-use crate::explorer::pins::{Pin, letter};
+use crate::explorer::pins::{Compared, Pin, letter};
 use crate::explorer::{CurveData, Model, ScreenPanel};
 use crate::figure::{Axis, Scale};
 use crate::tui::app::App;
@@ -30,28 +30,6 @@ pub fn draw(frame: &mut Frame<'_>, area: Rect, app: &App) {
         (None, _) => vec![Line::styled(" no path yet", theme.dim())],
     };
     frame.render_widget(Paragraph::new(lines), inner);
-}
-
-/// Two paths of the same kind.
-struct Compared<'a> {
-    now: &'a PathReport,
-    pin: &'a PathReport,
-    /// What both are in a word, for the title; `None` for the path on the screen.
-    name: Option<&'static str>,
-}
-
-impl<'a> Compared<'a> {
-    /// The path and that of the pin: two loops, or the unloadings from the start where one of them has none.
-    fn of(model: &'a Model, pin: &'a Pin) -> Option<Self> {
-        let now = model.path()?;
-        let is_loop = now.turn.is_some();
-        if let Some(pin) = pin.whole.as_deref().filter(|_| is_loop) {
-            return Some(Self { now, pin, name: Some("Loop") });
-        }
-        let of_curve = model.curve.as_ref().and_then(|curve| curve.report.as_ref());
-        let now = if is_loop { of_curve.unwrap_or(now) } else { now };
-        Some(Self { now, pin: pin.curve.report.as_ref()?, name: is_loop.then_some("Unloading") })
-    }
 }
 
 /// Its name; that its numbers are not those of the pull at a rate; and beside a pin, what the rows are given in, as much
