@@ -321,8 +321,9 @@ pub fn heads(line: &str, separator: Separator, dimensions: &[Dimension]) -> Vec<
                 at.1 = unit;
                 match remark {
                     Some(factor) if has_factor(&factor) => at.0 = format!("{} {factor}", at.0),
-                    Some(factor) if is_power_of_ten(&factor) => {
-                        at.0 = format!("{} × {factor}", at.0.trim_end())
+                    // The tenth column may be numbered.
+                    Some(factor) if is_power_of_ten(&factor) && factor != "10" => {
+                        at.0 = format!("{} × {factor}", at.0.trim_end());
                     }
                     _ => {}
                 }
@@ -404,8 +405,13 @@ pub fn has_factor(name: &str) -> bool {
     let beside = |(before, behind): (&str, &str)| {
         behind.trim_start().starts_with(is_digit) || before.trim_end().ends_with(is_digit)
     };
-    let divisor = name.rsplit_once('/').map(|(_, divisor)| divisor.trim());
+    // Between two numbers a slash makes a date, or counts samples.
+    let divides = |(before, divisor): (&str, &str)| {
+        !before.trim_end().ends_with(is_digit)
+            && divisor.trim_start().starts_with(is_digit)
+            && is_power_of_ten(divisor.trim())
+    };
     name.contains("10^")
-        || divisor.is_some_and(|divisor| divisor.starts_with(is_digit) && is_power_of_ten(divisor))
+        || name.rsplit_once('/').is_some_and(divides)
         || signs.iter().any(|sign| name.split_once(*sign).is_some_and(beside))
 }

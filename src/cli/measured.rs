@@ -122,8 +122,11 @@ pub(super) fn apart(paths: &[OsString]) -> Result<(Option<OsString>, Vec<PathBuf
     // A file of points has an ending or a folder: a bare name that is not there is that of a preset, misspelt.
     let is_bare = |path: &&OsString| !Path::new(path).exists() && Path::new(path).extension().is_none();
     let bare = files.iter().copied().find(|path| is_bare(path) && Path::new(path).components().count() == 1);
-    if let Some(name) = bare.filter(|name| !name.to_string_lossy().contains(':')) {
-        problem::store().resolve(name)?;
+    if let Some(name) = bare.filter(|name| presets.is_empty() && !name.to_string_lossy().contains(':'))
+        && let Err(error) = problem::store().resolve(name)
+    {
+        let name = show_path(Path::new(name));
+        return Err(Failure::Usage(format!("{name}: there is no such file, and {error}")));
     }
     Ok((presets.first().map(|preset| (*preset).clone()), files.into_iter().map(PathBuf::from).collect()))
 }

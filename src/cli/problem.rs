@@ -78,16 +78,17 @@ impl Changes {
     pub fn beside<'a>(
         &self,
         preset: &Preset,
-        axes: impl Iterator<Item = &'a str> + Clone,
+        axes: impl IntoIterator<Item = &'a str>,
     ) -> Result<(), Failure> {
+        let axes: Vec<&str> = axes.into_iter().collect();
         for change in self.all() {
             let typed = change.split('=').next().unwrap_or_default().trim();
             let Ok(key) = key_called(preset, typed) else { continue };
             let of_device = |axis: &'a str| if axis == COMPLIANCE { "path.control.stiffness" } else { axis };
-            if let Some(axis) = axes.clone().find(|axis| overrides(of_device(axis), &key)) {
-                let option = if self.assignments.contains(&change) { "--set" } else { "--control:" };
-                let key = quote(&key);
-                let what = format!("{option} {key}: the axis {axis} gives each point its own");
+            if let Some(axis) = axes.iter().copied().find(|axis| overrides(of_device(axis), &key)) {
+                let is_set = self.assignments.contains(&change);
+                let option = if is_set { format!("--set {}", quote(&key)) } else { "--control".to_owned() };
+                let what = format!("{option}: the axis {axis} gives each point its own");
                 return Err(Failure::Usage(what));
             }
         }
@@ -143,10 +144,10 @@ impl ProblemArguments {
             // A pipe can be read only once, and then the second failure would be another. Otherwise the second one does not blame
             // the file for what is wrong without it.
             let is_pipe = self.preset.as_deref().is_some_and(|name| stream::is_stream(Path::new(name)));
-            match is_unused {
-                true => alone.load(console).map_err(|second| if is_pipe { failure } else { second }),
-                false => Err(failure),
+            if !is_unused {
+                return Err(failure);
             }
+            alone.load(console).map_err(|second| if is_pipe { failure } else { second })
         })
     }
 

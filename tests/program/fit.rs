@@ -417,7 +417,10 @@ fn what_a_person_can_mend_is_said_with_status_2() {
         ),
         (vec!["fit", "fig-9", FREE[0], FREE[1]], "a preset that names one in data.file"),
         (vec!["fit", "none.csv", "lens", FREE[0], FREE[1]], "none.csv"),
-        (vec!["fit", &path, "lense", FREE[0], FREE[1]], "no preset is called \"lense\"; did you mean lens?"),
+        (
+            vec!["fit", &path, "lense", FREE[0], FREE[1]],
+            "lense: there is no such file, and no preset is called \"lense\"; did you mean lens?",
+        ),
         (
             vec!["fit", &path, "fig-9", FREE[0], FREE[1]],
             "has a unit, um, and the problem is in reduced units",
@@ -509,6 +512,35 @@ fn an_approach_that_is_headed_as_a_position_is_told() {
         let ended = home.run(&["fit", "p.csv", "lens", FREE[0], FREE[1]]);
         let told = "x, headed \"position\", is read as the position of the device and may be the approach of the bodies";
         assert_eq!(ended.err.contains(told), is_told, "{spring}: {}", ended.err);
+    }
+}
+
+/// The force is k times a deflection, and all values of the bodies are in proportion to it: k cannot be fitted, and a note of it is
+/// exact.
+#[test]
+fn the_stiffness_is_not_fitted_to_deflections() {
+    let home = Home::new();
+    let deflected = |line: &str| {
+        let cells: Vec<&str> = line.split(',').map(str::trim).collect();
+        let force: f64 = cells[1].parse().unwrap();
+        format!("{},{:.6},{}\n", cells[0], force / 500.0, cells[2])
+    };
+    let rows: String = LENS
+        .lines()
+        .filter(|line| line.starts_with(|c: char| c.is_ascii_digit() || c == '-'))
+        .map(deflected)
+        .collect();
+    home.file(
+        "d.csv",
+        &format!("# segment: approach, then retraction\nposition [um],deflection [um],segment\n{rows}"),
+    );
+    let base = ["fit", "d.csv", "lens"];
+    let ended = home.run(&base);
+    assert_eq!(ended.status, 0, "{} {}", ended.out, ended.err);
+    let exact = "note: with k 10 % larger: E* +10.0 %, γ +10.0 %; with k 10 % smaller: E* −10.0 %, γ −10.0 %";
+    assert!(ended.out.contains(exact), "{}", ended.out);
+    for more in [["--free", "E*,gamma,data.offset,k"], ["--uncertain", "path.control.stiffness=10%"]] {
+        home.refused(&[&base[..], &more].concat(), &["is held: the points have the deflection"]);
     }
 }
 

@@ -46,15 +46,25 @@ const AT_ZERO: f64 = 0.02;
 /// # Errors
 /// [`FitError`].
 pub fn fit_own(preset: &Preset, options: &Options, progress: &dyn Progress) -> Result<Fit, FitError> {
+    /// χ² per degree of freedom.
+    const FAR: f64 = 100.0;
     let (points, asked) = seen(preset, options)?;
     let other = preset.other_reading().map_err(FitError::Data)?;
     let share = if other.is_some() { 0.5 } else { 1.0 };
     let own = ProgressPart::new(progress, [0.0, share]);
     let mut found = fit(preset, &points, &Options { asked, ..options.clone() }, &own)?;
-    if let Some(other) = other.filter(|_| found.verdict != Verdict::Describes && !found.reasons.is_empty()) {
-        let reason =
-            of_reading(preset, &other, (options, &found), &ProgressPart::new(progress, [share, 1.0]));
-        found.reasons.splice(0..0, reason);
+    // Of a heading that says what x is, the other reading is tried only far from the points.
+    let is_far = found.chi_squared > FAR && !found.reasons.is_empty();
+    let is_tried = |other: &OtherReading| match found.verdict {
+        Verdict::Describes => false,
+        Verdict::DoesNotDescribe => other.is_doubtful || is_far,
+        Verdict::NotDetermined | Verdict::NotConverged => is_far,
+    };
+    if let Some(other) = other.filter(is_tried) {
+        let progress = ProgressPart::new(progress, [share, 1.0]);
+        let reason = of_reading(preset, &other, (options, &found), &progress);
+        let at = if other.is_doubtful { 0 } else { found.reasons.len() };
+        found.reasons.splice(at..at, reason);
     }
     found.notes.splice(0..0, preset.notes_of_reading().map_err(FitError::Data)?);
     Ok(found)
@@ -69,7 +79,7 @@ fn of_reading(
     progress: &dyn Progress,
 ) -> Option<Reason> {
     /// By how much chi squared is smaller where a heading that leaves nothing open may still be wrong.
-    const NEARER: f64 = 0.1;
+    const NEARER: f64 = 0.01;
     let mut preset = preset.clone();
     let options = options.without_intervals();
     let set = preset.set(COLUMNS, columns.as_str().into());

@@ -1,6 +1,7 @@
 //! What is asked of a fit, what can be free, and why there is no fit.
 
 use super::problem::{ADHESION, MODULUS, Target};
+use super::track::{LARGEST_MAUGIS, maugis};
 use crate::measured::Asked;
 use crate::measured::{Abscissa, BranchError};
 use crate::preset::called::key_called;
@@ -10,6 +11,7 @@ use crate::preset::schema::{CHOOSERS, Kind, LIQUID_KEYS, RANGE_KEYS, Row};
 use crate::preset::{Preset, Value, edge};
 use crate::progress::Stopped;
 use crate::text::{closest_key, greek, quote};
+use crate::units::number::short;
 use thiserror::Error;
 
 /// What is asked of a fit.
@@ -149,6 +151,19 @@ pub enum FitError {
     Stopped(#[from] Stopped),
 }
 
+impl FitError {
+    /// Why no start leads to a curve that reaches the points of `preset`.
+    pub(super) fn no_start(preset: &Preset) -> Self {
+        match maugis(preset).filter(|maugis| *maugis > LARGEST_MAUGIS) {
+            Some(maugis) => Self::SmallRange(short(maugis, 3), LARGEST_MAUGIS),
+            None => Self::NoStart,
+        }
+    }
+}
+
+/// The key of the stiffness of the device.
+pub(super) const SPRING: &str = "path.control.stiffness";
+
 /// What a name after `--free` stands for.
 ///
 /// # Errors
@@ -185,14 +200,12 @@ pub fn target(preset: &Preset, abscissa: Abscissa, name: &str) -> Result<Target,
                    the range of such an adhesion";
         return Err(refused(why.to_owned()));
     }
-    let others = [
-        MODULUS,
-        ADHESION,
-        edge::CLOSING_ADHESION,
-        "path.control.stiffness",
-        edge::REFERENCE_SPEED,
-        edge::EXPONENT,
-    ];
+    if row.key == SPRING && preset.is_of_deflection() {
+        let why = "is held: the points have the deflection of the spring, and the force, E* and gamma are all in proportion to its k. \
+                   They are off by the same share as k is";
+        return Err(refused(why.to_owned()));
+    }
+    let others = [MODULUS, ADHESION, edge::CLOSING_ADHESION, SPRING, edge::REFERENCE_SPEED, edge::EXPONENT];
     let fits = row.key.starts_with("gap.") || others.iter().chain(&RANGE_KEYS).any(|key| row.key == *key);
     // That of a formula may have any sign: a fit keeps the one of its first guess, which is positive.
     let is_positive = match row.kind {

@@ -5,7 +5,6 @@ use super::least_squares::LeastSquares;
 use super::options::{FitError, Options};
 use super::pose::posed;
 use super::problem::{Datum, FitProblem};
-use super::run::no_start;
 use super::solve::SolvedFit;
 use crate::measured::Abscissa;
 use crate::preset::Preset;
@@ -44,7 +43,7 @@ pub fn residuals_own(preset: &Preset) -> Result<(Abscissa, Vec<Residual>), FitEr
     let u = at_start(&problem);
     let approached = Approached::of(&problem, &branches, None);
     let problem = approached.and_then(|approached| approached.seen(&problem, &u, 1.0)).unwrap_or(problem);
-    let residuals = LeastSquares::residuals(&problem, &u).ok_or_else(|| no_start(preset))?;
+    let residuals = LeastSquares::residuals(&problem, &u).ok_or_else(|| FitError::no_start(preset))?;
     let scale = problem.scale(&residuals);
     Ok((branches.abscissa, beside(&problem, &residuals, scale)))
 }

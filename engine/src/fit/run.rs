@@ -27,7 +27,6 @@ use super::settled::{
 use super::shown::{KnownNoise, of_shown_noise};
 use super::solve::{SolvedFit, solve};
 use super::start::{REACHED, Tried, start};
-use super::track::{LARGEST_MAUGIS, maugis};
 use super::uncertain::given;
 use super::verdict::{Reason, Verdict};
 use crate::elementary::{ln, pow};
@@ -55,8 +54,9 @@ pub(super) fn fit_branches(
     let what = determined(problem, solved, &scatter, options.robust);
     if what.errors.is_some() {
         let progress = ProgressPart::new(progress, [0.95, 1.0]);
-        let notes = [of_spring, of_drift].map(|of| of(problem, solved, options.robust, &progress));
-        posed.notes.extend(notes.into_iter().flatten());
+        let is_of_deflection = preset.is_of_deflection();
+        let of_spring = of_spring(problem, solved, is_of_deflection, (options.robust, &progress));
+        posed.notes.extend(of_spring);
     }
     posed.fit(what, scatter, true, progress)
 }
@@ -139,7 +139,7 @@ impl<'a> Posed<'a> {
         let solve = |problem: &mut FitProblem, u: &[f64]| last(problem, u, options.robust, least, &part);
         let found = |problem: &mut FitProblem| -> Result<_, FitError> {
             let ends = start(problem, options.scan, options.robust, &ProgressPart::new(progress, [0.0, 0.8]))
-                .ok_or_else(|| no_start(&problem.preset))?;
+                .ok_or_else(|| FitError::no_start(&problem.preset))?;
             let solved = solve(problem, &ends.best)?;
             let (solved, alike) = nearest(problem, solved, &ends.others, options.robust, &part);
             Ok((ends.tried, within_range(problem, solved, options.robust, &part), alike))
@@ -237,6 +237,8 @@ impl<'a> Posed<'a> {
         let verdict = verdict(ending, what.errors.is_some(), &reasons);
         notes.extend(growth(&problem, u, &what, verdict));
         notes.extend(of_starts(&starts, verdict));
+        let of_drift = || of_drift(&problem, &solved, options.robust, progress);
+        notes.extend((alone && verdict == Verdict::Describes).then(of_drift).flatten());
         notes.extend((verdict == Verdict::DoesNotDescribe).then(|| untried(&problem, &reasons)).flatten());
         let residuals = beside(&problem, &solved.minimum.at.residuals, solved.scale);
         let doubt = approached.and_then(|approached| approached.doubt);
@@ -309,14 +311,6 @@ fn of_alike(problem: &FitProblem, u: &[f64], alike: &[Vec<f64>], what: &Determin
         format!("{} = {value}", letter(&problem.preset, &key))
     });
     Some(format!("{} describe the points as well, in base units", shown.collect::<Vec<_>>().join(", ")))
-}
-
-/// Why no start leads to a curve that reaches the points.
-pub(super) fn no_start(preset: &Preset) -> FitError {
-    match maugis(preset).filter(|maugis| *maugis > LARGEST_MAUGIS) {
-        Some(maugis) => FitError::SmallRange(short(maugis, 3), LARGEST_MAUGIS),
-        None => FitError::NoStart,
-    }
 }
 
 /// That no start came near the points, where a fit that has come to its end does not describe them or is not determined.

@@ -275,7 +275,9 @@ impl FitProblem {
         let unit = self.preset.edge.rate.filter(|_| !is_force).or(self.preset.edge.reference_speed)?;
         let mut list = vec![own];
         for (j, value) in [(speed, unit), (exponent, 1.0)] {
-            j.into_iter().for_each(|j| base[j] = ln(value));
+            if let Some(j) = j {
+                base[j] = ln(value);
+            }
         }
         list.extend(varied(
             varied(varied(vec![base], modulus, &SOFTER), speed, &SPEEDS),
@@ -428,7 +430,7 @@ pub fn start(problem: &FitProblem, scan: bool, robust: bool, progress: &dyn Prog
     let found = best_of(&run, ranked, (scan, robust), progress);
     // A record that ends in tension misleads a law without range, and with it the starts taken from there.
     let is_near = |ends: &StartEnds| ends.nearest() < REACHED;
-    if !scan || problem.preset.cohesion().is_none() || found.as_ref().is_some_and(is_near) {
+    if !scan || problem.preset.cohesion().is_none() || found.as_ref().is_none_or(is_near) {
         return found;
     }
     let compared = problem.thinned(COMPARED);
@@ -436,7 +438,10 @@ pub fn start(problem: &FitProblem, scan: bool, robust: bool, progress: &dyn Prog
     let mut around = led(&compared, around, POOL, robust, progress);
     around.truncate(BEST);
     let other = best_of(&run, around, (scan, robust), progress);
-    [found, other].into_iter().flatten().min_by(|a, b| a.nearest().total_cmp(&b.nearest()))
+    // One that is hardly nearer may be worse in another respect.
+    let is_better =
+        |other: &StartEnds| found.as_ref().is_some_and(|found| 2.0 * other.nearest() < found.nearest());
+    other.filter(is_better).or(found)
 }
 
 /// The candidates nearest to the points, each with its distance, the nearest first.

@@ -2,6 +2,7 @@
 
 use super::points::MeasuredPoint;
 use super::role::Segment;
+use std::collections::HashSet;
 
 /// Rows that repeat the row before are dropped if they make up this share of all rows.
 const REPEATED: f64 = 0.3;
@@ -83,24 +84,32 @@ const FEWEST: usize = 10;
 
 /// Whether two points are the same, but for their times and rows.
 fn same(a: &MeasuredPoint, b: &MeasuredPoint) -> bool {
-    let bits = |p: &MeasuredPoint| [p.x.to_bits(), p.force.to_bits(), p.radius.to_bits()];
     bits(a) == bits(b)
+}
+
+fn bits(point: &MeasuredPoint) -> [u64; 3] {
+    [point.x, point.force, point.radius].map(f64::to_bits)
 }
 
 /// Removes what repeats the rows before it as a whole, as of a record that is pasted twice; returns how many rows that were. No
 /// second measurement has the same noise.
 pub(super) fn without_copies(points: &mut Vec<MeasuredPoint>) -> usize {
     let count = points.len();
-    let repeats = |period: &usize| {
-        let (before, behind) = (&points[..count - period], &points[*period..]);
-        before.iter().zip(behind).all(|(a, b)| same(a, b))
-    };
-    // With less than a whole copy, or all rows alike, there may be another cause.
-    let Some(period) =
-        (FEWEST..=count / 2).find(repeats).filter(|_| points.iter().any(|p| !same(p, &points[0])))
-    else {
+    // How many points before and including each are also the first ones: by these the shortest period is found in one pass.
+    let mut borders = vec![0; count];
+    for i in 1..count {
+        let mut length: usize = borders[i - 1];
+        while length > 0 && !same(&points[i], &points[length]) {
+            length = borders[length - 1];
+        }
+        borders[i] = length + usize::from(same(&points[i], &points[length]));
+    }
+    let period = count - borders.last().copied().unwrap_or(0);
+    // Rows that stand still, or go to and fro between two steps of a converter, are no copies.
+    let distinct = |of: &[MeasuredPoint]| of.iter().map(bits).collect::<HashSet<_>>().len();
+    if 2 * period > count || period < FEWEST || distinct(&points[..period]) < FEWEST {
         return 0;
-    };
+    }
     points.truncate(period);
     count - period
 }

@@ -144,7 +144,18 @@ pub(super) fn segment(table: &TextTable) -> Option<Segment> {
         text.starts_with(char::is_alphabetic).then(|| Segment::of(text)).flatten()
     };
     table.above.iter().rev().find_map(|words| match keyed(words, "segment") {
-        Some(value) => of(value.split_whitespace().next()?),
+        // Of a sentence about both branches neither is that of the rows.
+        Some(value) => {
+            /// Shorter words, such as "in", are words of any sentence.
+            const WORD: usize = 4;
+            let mut named = value.split_whitespace();
+            let first = of(named.next()?)?;
+            named
+                .filter(|word| word.len() >= WORD)
+                .filter_map(of)
+                .all(|other| other == first)
+                .then_some(first)
+        }
         None => of(words.text),
     })
 }

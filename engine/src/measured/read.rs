@@ -65,7 +65,8 @@ struct Pieces<'a> {
 }
 
 /// Text with line feeds as line ends, which old files end with a carriage return alone, and with the brackets, digits and units of
-/// East Asian texts, which stand in as wide a cell as a letter there, as the usual characters.
+/// East Asian texts, which are as wide as a letter there, as the usual characters. Wide commas, semicolons and quotation marks are part of the
+/// text: none of them separates cells.
 fn plain(text: Cow<'_, str>) -> Cow<'_, str> {
     let is_wide = |c: char| matches!(c, '\u{ff01}'..='\u{ff5e}' | '\u{3000}' | '\u{3380}'..='\u{33df}');
     if !text.contains('\r') && !text.contains(is_wide) {
@@ -74,8 +75,9 @@ fn plain(text: Cow<'_, str>) -> Cow<'_, str> {
     let mut plain = String::with_capacity(text.len());
     for c in text.replace("\r\n", "\n").replace('\r', "\n").chars() {
         // The wide form of a character follows at a fixed distance.
-        let usual = char::from_u32(u32::from(c).wrapping_sub(0xfee0))
-            .filter(|_| ('\u{ff01}'..='\u{ff5e}').contains(&c));
+        let is_mark = matches!(c, '\u{ff0c}' | '\u{ff1b}' | '\u{ff02}');
+        let is_usual = ('\u{ff01}'..='\u{ff5e}').contains(&c) && !is_mark;
+        let usual = char::from_u32(u32::from(c).wrapping_sub(0xfee0)).filter(|_| is_usual);
         match (c, usual) {
             (_, Some(usual)) => plain.push(usual),
             ('\u{3000}', _) => plain.push(' '),

@@ -193,6 +193,14 @@ impl Preset {
         Ok(measured.open.clone().map(|(x, is_doubtful)| OtherReading { x, is_doubtful, meanings, columns }))
     }
 
+    /// Whether the force of its measured curve is a deflection times the stiffness of the spring, so that all of it grows with k.
+    pub(crate) fn is_of_deflection(&self) -> bool {
+        let source = self.data.source.as_ref();
+        let measured = source.and_then(|source| source.measured(&self.data.columns).ok());
+        let has = |role| measured.iter().any(|measured| measured.used.iter().any(|used| used.role == role));
+        has(ColumnRole::Deflection) && !has(ColumnRole::Force)
+    }
+
     /// The branches of its measured curve; `None` without one.
     ///
     /// # Errors

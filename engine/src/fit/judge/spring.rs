@@ -1,7 +1,7 @@
 //! What the fit would be with another spring, or with a force that drifts.
 
 use super::super::least_squares::Ending;
-use super::super::options::letter;
+use super::super::options::{SPRING, letter};
 use super::super::problem::{FitProblem, FreeParameter, Target};
 use super::super::solve::{SolvedFit, solve};
 use crate::elementary::exp_m1;
@@ -27,19 +27,23 @@ const UNSEEN: f64 = 5e-4;
 pub(in crate::fit) fn of_spring(
     problem: &FitProblem,
     solved: &SolvedFit,
-    robust: bool,
-    progress: &dyn Progress,
+    is_of_deflection: bool,
+    (robust, progress): (bool, &dyn Progress),
 ) -> Option<String> {
-    const KEY: &str = "path.control.stiffness";
     let Control::Stiffness(k) = problem.preset.path.control else { return None };
-    if problem.parameters.iter().any(|p| p.target == Target::Key(KEY.to_owned())) {
+    if problem.parameters.iter().any(|p| p.target == Target::Key(SPRING.to_owned())) {
         return None;
     }
     let part = FitPart::of(problem, solved, robust, progress)?;
     let (mut told, mut plays) = (Vec::new(), false);
     for (factor, words) in [(1.1, "10 % larger"), (0.9, "10 % smaller")] {
         let mut other = part.problem.clone();
-        other.preset.set(KEY, Value::Number(factor * k)).ok()?;
+        other.preset.set(SPRING, Value::Number(factor * k)).ok()?;
+        // The force is k times what was measured.
+        if is_of_deflection {
+            other.data.iter_mut().for_each(|datum| datum.point.force *= factor);
+            other.sigma[1] *= factor;
+        }
         // Another spring moves the points: values that stay where they were have not been fitted to it.
         let is_position = problem.abscissa == Abscissa::Position;
         let found = part.moved(&other).filter(|u| !is_position || farthest(u, &part.own) > STILL);
@@ -59,7 +63,7 @@ pub(in crate::fit) fn of_spring(
 }
 
 /// What the fit would be to a force that drifts evenly with x; `None` where x does not tell the force, a tilt is free, both branches are
-/// fitted, which a drift parts, or it moves no value by what matters.
+/// fitted, which a drift parts, or it changes no value by what matters.
 pub(in crate::fit) fn of_drift(
     problem: &FitProblem,
     solved: &SolvedFit,
@@ -71,7 +75,9 @@ pub(in crate::fit) fn of_drift(
     /// A smaller change of a logarithm is told by none.
     const MATTERS: f64 = 3e-3;
     let is_free = problem.parameters.iter().any(|p| p.target == Target::Tilt);
-    if is_free || problem.abscissa == Abscissa::Radius || problem.data.is_empty() {
+    // A tilt that is given is that of a drift.
+    let is_given = problem.instrument_at(&solved.minimum.parameters).tilt != 0.0;
+    if is_free || is_given || problem.abscissa == Abscissa::Radius || problem.data.is_empty() {
         return None;
     }
     let first = problem.data[0].segment;
@@ -81,14 +87,22 @@ pub(in crate::fit) fn of_drift(
     let part = FitPart::of(problem, solved, robust, progress)?;
     let mut other = part.problem.clone();
     let forces = range(other.data.iter().map(|datum| datum.point.force));
-    let way = range(other.data.iter().map(|datum| datum.point.x));
+    let rows = range(other.data.iter().map(|datum| datum.point.at as f64));
     for datum in &mut other.data {
-        datum.point.force += DRIFT * forces * datum.point.x / way;
+        datum.point.force += DRIFT * forces * datum.point.at as f64 / rows;
     }
     let found = part.moved(&other).filter(|found| part.change(found) >= MATTERS)?;
+    // Which way a force drifts is not known, and which sign of the file that is matters little.
+    let signs: Vec<f64> = part.logarithms(&found).map(|(_, change)| change.signum()).collect();
+    let each = part.logarithms(&found).zip(&signs).map(|((parameter, change), sign)| {
+        let name = letter(&problem.preset, &parameter.key());
+        let sign = if sign.total_cmp(&signs[0]).is_eq() { '±' } else { '∓' };
+        format!("{name} {sign}{:.1} %", 100.0 * change.abs())
+    });
     Some(format!(
-        "if the force drifts by 1 % of its range over the rows: {}. The errors hold no drift; a free data.tilt finds it",
-        part.changes(&found)
+        "a force that drifts by 1 % of its range over the rows would change the values by {}. The errors hold no drift: measure both \
+         branches, or free data.tilt",
+        each.collect::<Vec<_>>().join(", ")
     ))
 }
 

@@ -488,6 +488,9 @@ fn a_multiple_of_a_unit_is_not_the_unit() {
         "depth [um];Force / mN 1",
         "depth [um];Force Ch 10 mN",
         "depth [um];Force [mN] (1)",
+        "depth [um] (9);Force [mN] (10)",
+        "depth [um];Force 12/10 [mN]",
+        "depth (sample 3/10) [um];Force (sample 3/10) [mN]",
         "depth [um];Force (PDMS) [mN]",
         "depth [um];Force [mN] (PDMS)",
     ] {
@@ -500,7 +503,7 @@ fn a_multiple_of_a_unit_is_not_the_unit() {
 #[test]
 fn wide_brackets_and_units_in_one_character_are_read() {
     let file = |header: &str| format!("{header}\n{}", two(";", 1.0, 1.0));
-    for header in ["depth（µm）；Force（mN）", "depth(㎛);Force(mN)", "depth\u{3000}[µm];Ｆｏｒｃｅ [mN]"]
+    for header in ["depth（µm）;Force（mN）", "depth(㎛);Force(mN)", "depth\u{3000}[µm];Ｆｏｒｃｅ [mN]"]
     {
         let measured = parse(file(header).as_bytes(), &ColumnSpec::default());
         let used = measured.as_ref().map(|measured| measured.used.iter().all(|used| used.has_unit));
