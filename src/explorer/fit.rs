@@ -32,7 +32,7 @@ pub(super) fn mark(model: &mut Model) -> Vec<Effect> {
     match preset.set(data::FREE, Value::Text(keys.join(","))) {
         Ok(()) => {
             let effects = change(model, preset);
-            let does = if is_freed { "is free: a fit may change it" } else { "is held in a fit" };
+            let does = if is_freed { "is free: a fit may change it" } else { "is no longer in data.free" };
             model.tell(Level::Info, format!("{} {does}", row.label));
             effects
         }

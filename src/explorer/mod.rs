@@ -79,7 +79,7 @@ pub mod model;
 pub mod node;
 pub mod nudge;
 pub mod onset;
-mod pinned;
+pub mod pinned;
 pub mod pins;
 pub mod profile;
 pub mod progress;

@@ -1,13 +1,14 @@
-//! The curves of pins that have none yet, computed one after the other.
+//! The curves of pins that have none yet, computed one after the other; what a pin is compared with.
 
 use super::background::{Background, Tell, Want, Watcher};
 use super::command::Id;
 use super::curve::CurveData;
 use super::effect::Effect;
 use super::model::{Level, Model};
-use super::pins::{Elements, letter};
+use super::pins::{Elements, Pin, letter};
 use super::progress::Staged;
 use pulloff_engine::preset::Preset;
+use pulloff_engine::report::PathReport;
 use std::sync::Arc;
 
 /// The curve of the pin with this number, or `None` if there is none.
@@ -16,6 +17,28 @@ pub struct PinCurve {
     pub number: usize,
     pub curve: Option<Arc<CurveData>>,
     pub elements: Option<Elements>,
+}
+
+/// Two paths of the same kind.
+pub struct Compared<'a> {
+    pub now: &'a PathReport,
+    pub pin: &'a PathReport,
+    /// What both are in a word, for the title; `None` for the path on the screen.
+    pub name: Option<&'static str>,
+}
+
+impl<'a> Compared<'a> {
+    /// The path and that of the pin: two loops, or the unloadings from the start where one of them has none.
+    pub fn of(model: &'a Model, pin: &'a Pin) -> Option<Self> {
+        let now = model.path()?;
+        let is_loop = now.turn.is_some();
+        if let Some(pin) = pin.whole.as_deref().filter(|_| is_loop) {
+            return Some(Self { now, pin, name: Some("Loop") });
+        }
+        let of_curve = model.curve.as_ref().and_then(|curve| curve.report.as_ref());
+        let now = if is_loop { of_curve.unwrap_or(now) } else { now };
+        Some(Self { now, pin: pin.curve.report.as_ref()?, name: is_loop.then_some("Unloading") })
+    }
 }
 
 impl Background for PinCurve {

@@ -4,7 +4,6 @@
 
 use super::command::Id;
 use super::curve::CurveData;
-use super::model::Model;
 use pulloff_engine::case::Case;
 use pulloff_engine::preset::model::BasisSpec;
 use pulloff_engine::preset::schema::NONE;
@@ -112,28 +111,6 @@ impl Pin {
             BasisSpec::Exact => "exact".to_owned(),
         };
         elements.said(&which, ["A", "Newton"])
-    }
-}
-
-/// Two paths of the same kind.
-pub struct Compared<'a> {
-    pub now: &'a PathReport,
-    pub pin: &'a PathReport,
-    /// What both are in a word, for the title; `None` for the path on the screen.
-    pub name: Option<&'static str>,
-}
-
-impl<'a> Compared<'a> {
-    /// The path and that of the pin: two loops, or the unloadings from the start where one of them has none.
-    pub fn of(model: &'a Model, pin: &'a Pin) -> Option<Self> {
-        let now = model.path()?;
-        let is_loop = now.turn.is_some();
-        if let Some(pin) = pin.whole.as_deref().filter(|_| is_loop) {
-            return Some(Self { now, pin, name: Some("Loop") });
-        }
-        let of_curve = model.curve.as_ref().and_then(|curve| curve.report.as_ref());
-        let now = if is_loop { of_curve.unwrap_or(now) } else { now };
-        Some(Self { now, pin: pin.curve.report.as_ref()?, name: is_loop.then_some("Unloading") })
     }
 }
 

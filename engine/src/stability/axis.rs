@@ -1,6 +1,8 @@
 //! One key of a preset over a range: an axis of a map.
 
 use crate::elementary::{ln, pow};
+use crate::preset::edge;
+use crate::preset::schema::{TURN_KEYS, table_of};
 use serde::{Deserialize, Serialize};
 use std::fmt;
 
@@ -37,6 +39,11 @@ pub struct AxisError {
     key: String,
     range: [f64; 2],
     expected: &'static str,
+}
+
+/// Whether a key moves no state of a map: the states are the equilibria of one disc with an opening edge.
+pub fn is_blind(key: &str) -> bool {
+    edge::KEYS.contains(&key) || TURN_KEYS.contains(&key) || table_of(key) == Some("data")
 }
 
 impl MapAxis {

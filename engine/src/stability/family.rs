@@ -4,15 +4,14 @@
 //! the gap is linear in a number (a wave's amplitude), so is g, and two tables give it for all values. Any other number
 //! needs the table of its own gap at each value.
 
-use super::axis::{COMPLIANCE, MapAxis};
+use super::axis::{COMPLIANCE, MapAxis, is_blind};
 use super::law::{EdgeJet, Law, root_of};
 use crate::disc::blend::Blend;
 use crate::disc::table::KeptTables;
 use crate::disc::{ExactBasis, Panels, Table, TableError, waves};
 use crate::gap::{Form, Gap, Shape, Wave};
 use crate::preset::groups::are_rivals;
-use crate::preset::schema::{TURN_KEYS, table_of};
-use crate::preset::{Invalid, Preset, edge};
+use crate::preset::{Invalid, Preset};
 use crate::problem::{Control, Reduced, Start, Units};
 use crate::progress::{Stopped, Unwatched};
 use crate::quasistatic::monotone::weighted;
@@ -195,9 +194,6 @@ impl Family {
                 }
                 return Err(FamilyError::NoNumber(axis.key.clone()));
             }
-            let is_blind = |key: &str| {
-                edge::KEYS.contains(&key) || TURN_KEYS.contains(&key) || table_of(key) == Some("data")
-            };
             if is_blind(&axis.key) {
                 return Err(FamilyError::Blind(axis.key.clone()));
             }

@@ -10,7 +10,7 @@ use super::quantity::{QuantityColumn, USUAL};
 use crate::gap::shapes::split_mix::SplitMix64;
 use crate::preset::called::key_called;
 use crate::preset::schema::{CHOOSERS, Fallback};
-use crate::preset::{Invalid, Preset, Value, groups};
+use crate::preset::{Preset, Value, groups};
 use crate::problem::Begin;
 use crate::progress::Progress;
 use crate::text::{closest, quote};
@@ -170,20 +170,17 @@ impl Spec {
         let mut preset = self.preset.clone();
         let keys = self.axes.iter().map(|axis| &*axis.key);
         preset.set_all(keys.zip(self.values(row))).map_err(|invalid| Fault::of_value(&invalid))?;
-        self.brought(&preset).map_or(Ok(preset), |invalid| Err(Fault::of_value(&invalid)))
+        Ok(preset)
     }
 
-    /// A value without a default in a row's preset that nobody gave: another shape brings those that it needs.
-    fn brought(&self, preset: &Preset) -> Option<Invalid> {
-        if !self.axes.iter().any(|axis| CHOOSERS.contains(&&*axis.key)) {
-            return None;
-        }
+    /// The values without a default in a row's preset that nobody gave: another shape brings those that it needs.
+    fn brought(&self, preset: &Preset) -> Vec<String> {
         let is_given = |key: &str| {
             self.preset.get(key).is_some() || self.axes.iter().any(|axis| overrides(&axis.key, key))
         };
-        let mut values = preset.values().into_iter();
-        let brought = values.find(|(row, _)| row.fallback == Fallback::Required && !is_given(&row.key));
-        brought.map(|(row, _)| Invalid::Missing { key: row.key.clone(), allowed: row.allowed() })
+        let values = preset.values().into_iter();
+        let brought = values.filter(|(row, _)| row.fallback == Fallback::Required && !is_given(&row.key));
+        brought.map(|(row, value)| format!("{} = {value}", row.key)).collect()
     }
 
     /// The quantities of a row; `None` when `progress` said stop. Whatever goes wrong is a fault of the row.
@@ -205,10 +202,19 @@ impl Spec {
         }
     }
 
-    /// What holds for the sweep as a whole, in words: gaps that are too steep, and unloadings beside loops.
+    /// What holds for the sweep as a whole, in words: numbers that another shape brings, gaps that are too steep, and unloadings
+    /// beside loops.
     pub fn warnings(&self) -> Vec<String> {
         let mut warnings = Vec::new();
         let rows = self.looked_at();
+        if self.axes.iter().any(|axis| CHOOSERS.contains(&&*axis.key)) {
+            let brought = rows.iter().filter_map(|row| Some(self.brought(&self.problem(*row).ok()?)));
+            let brought: BTreeSet<String> = brought.flatten().collect();
+            if !brought.is_empty() {
+                let all = brought.into_iter().collect::<Vec<_>>().join(", ");
+                warnings.push(format!("numbers that nobody gave, which another shape or law brings: {all}"));
+            }
+        }
         let count = rows.len() as u64;
         let slope = |row| Some((row, self.problem(row).ok()?.steep_slope()?));
         let steep: Vec<(u64, f64)> = rows.into_iter().filter_map(slope).collect();

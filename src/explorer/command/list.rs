@@ -118,7 +118,7 @@ macro_rules! each_command {
             "over the chart: the same problem in the ring elements of the paper, or its exact solution over those; again: remove"
             { words: "elements", look: look::in_rings }
         Pins "pins" "P" "pins" pins InOrder Needs("the letter of a pin, or all") "remove a pinned curve; the list says what each shows"
-            { words: "remove unpin", takes: takes("letter", pin).listing(pins_of) }
+            { words: "remove unpin compare outcomes", takes: takes("letter", pin).listing(pins_of) }
     }
     "Presets and files" {
         Open "open" "o" "open" always Nothing Needs("a preset") "open a preset; D in the list deletes one of your own"

@@ -7,7 +7,8 @@ use crate::explorer::export::{Export, file_for};
 use crate::explorer::look::NO_ENVELOPE;
 use crate::explorer::map_axes::{CURVES, key_of};
 use crate::explorer::model::Model;
-use crate::explorer::pins::{self, Compared, Pin};
+use crate::explorer::pinned::Compared;
+use crate::explorer::pins::{self, Pin};
 use crate::explorer::reach;
 use crate::explorer::view::{Home, Overlay, View};
 use crate::store::shipped::{self, SHIPPED};
@@ -19,6 +20,7 @@ use pulloff_engine::preset::{Parameter, Preset};
 use pulloff_engine::report::PathReport;
 use pulloff_engine::report::number::{loss, significant, with_unit};
 use pulloff_engine::stability::COMPLIANCE;
+use pulloff_engine::stability::axis::is_blind;
 use pulloff_engine::sweep::{QUANTITIES, SweepQuantity};
 use pulloff_engine::units::Quantity;
 
@@ -228,7 +230,8 @@ pub(in crate::explorer) fn axes_of(typing: &Typing<'_>) -> Vec<Offer> {
     if typing.words.len() > 1 {
         return Vec::new();
     }
-    let other = |offer: &Offer| typing.words.iter().all(|word| key_of(word) != offer.word);
+    let is_other = |offer: &Offer| typing.words.iter().all(|word| key_of(word) != offer.word);
+    let other = |offer: &Offer| is_other(offer) && !is_blind(&offer.word);
     let keys = numbers(preset).into_iter();
     let groups = GROUPS.iter().map(|row| Offer::new(&*row.key, &*row.meaning));
     let curves = if typing.words.is_empty() { Vec::new() } else { words(CURVES.map(|(name, _)| name)) };

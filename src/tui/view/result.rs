@@ -1,7 +1,8 @@
 //! The outcome of the path: A, B, the last contact, the snaps and their losses; with a pin, its numbers beside them.
 
 use super::parts::{is_selected, pair, panel};
-use crate::explorer::pins::{Compared, Pin, letter};
+use crate::explorer::pinned::Compared;
+use crate::explorer::pins::{Pin, letter};
 use crate::explorer::{CurveData, Model, ScreenPanel};
 use crate::figure::{Axis, Scale};
 use crate::tui::app::App;

@@ -103,7 +103,7 @@ parameters! {
     "material.range_of_action" => "z0" Length "range of action of the adhesion, for Tabor's number, and for the range of a tension \
                                       where nothing else sets it":
         Positive or Described("0.3 nm in SI; in reduced units none, and no Tabor number");
-    ADHESION => "adhesion" Number "short-range: at the edge of contact; dugdale: a constant tension within a range; capillary: a liquid bridge":
+    ADHESION => "adhesion" Number "model of adhesion: short-range at the edge of contact (JKR), dugdale with a tension within a range (Maugis, up to DMT), capillary as of a liquid bridge":
         Choice(&Adhesion::NAMES) or Text(Adhesion::NAMES[0]);
     RANGE_KEYS[0] => "sigma0" Stress "tension between the bodies within the range gamma/sigma0 of the adhesion":
         Positive or Described(RANGE) only ADHESION [Adhesion::NAMES[1]];
