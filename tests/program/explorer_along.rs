@@ -129,6 +129,22 @@ fn steps_wait_for_a_jump_and_the_way_is_not_turned_round() {
     assert_eq!(session.model.walker().unwrap().state, here);
 }
 
+/// Under another control the bodies touch first elsewhere: a loop begins anew, and counts no energy that was not lost.
+#[test]
+fn a_loop_under_another_control_begins_where_that_touches_first() {
+    for control in ["force", "stiffness=0.1"] {
+        let mut session = Session::new("fig-9-cycle");
+        let rigid = session.model.walker().unwrap().state;
+        session.does(pulloff::explorer::script::parse(&format!("control {control}")).unwrap().unwrap());
+        let fresh = Session::with("fig-9-cycle", &[&format!("path.control={control}")]);
+        let [here, there] = [&session, &fresh].map(|session| session.model.walker().unwrap());
+        assert_ne!(here.state, rigid, "{control}");
+        assert_eq!((here.state, here.on_path), (there.state, there.on_path), "{control}");
+        let lost = |session: &Session| session.model.log().lost().0.to_bits();
+        assert_eq!(lost(&session), lost(&fresh), "{control}");
+    }
+}
+
 #[test]
 fn another_value_leaves_the_walker_at_the_control_that_is_held() {
     let mut session = session(RANGE);

@@ -9,6 +9,7 @@ use crate::explorer::node::{Node, NodeKind};
 use crate::explorer::status_line::of_before;
 use crate::explorer::walk::Action;
 use crate::mend::WordedFault;
+use pulloff_engine::problem::Begin;
 use std::sync::Arc;
 
 /// The curve on the screen stays; the one being computed is no longer wanted.
@@ -61,7 +62,11 @@ pub(super) fn curve_came(
             let first = model.history.current().is_none();
             let begin = curve.setting.preset.path.begin;
             let walker = model.history.current();
-            let begins_elsewhere = walker.is_some_and(|node| node.setting.preset.path.begin != begin);
+            // A path that begins apart touches first elsewhere under another control.
+            let begins_elsewhere = walker.is_some_and(|node| {
+                let touches = node.begins && begin == Begin::Apart && node.control != curve.case.control;
+                node.setting.preset.path.begin != begin || touches
+            });
             model.curve = Some(Arc::clone(&curve));
             model.event = model.event.min(model.log_lines().saturating_sub(1));
             if first {

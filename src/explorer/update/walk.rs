@@ -318,7 +318,9 @@ fn has_begun(model: &Model, node: &Node) -> bool {
         NodeKind::Moved => begin == Begin::Disc && model.is_at_start(),
         _ => false,
     };
-    is_start && node.begins && node.setting.preset.path.begin == begin && model.is_on_curve(node)
+    // Where the bodies touch first depends on the control.
+    let is_under = begin == Begin::Disc || model.control() == Some(node.control);
+    is_start && is_under && node.begins && node.setting.preset.path.begin == begin && model.is_on_curve(node)
 }
 
 /// Back to where the walk begins; without a curve, the curve is requested again.
