@@ -501,6 +501,20 @@ fn a_multiple_of_a_unit_is_not_the_unit() {
 }
 
 #[test]
+fn a_remark_on_both_branches_is_that_of_neither() {
+    let segments = |remark: &str| {
+        let text = format!("# segment: {remark}\n# depth [um];force [mN]\n{}", two(";", 1.0, 1.0));
+        let segments = parse(text.as_bytes(), &ColumnSpec::default()).unwrap().segments;
+        segments.map(|all| {
+            [Segment::Approach, Segment::Retraction].map(|of| all.iter().filter(|one| **one == of).count())
+        })
+    };
+    assert_eq!(segments("approach then retract"), None);
+    assert_eq!(segments("retract"), Some([0, 20]));
+    assert_eq!(segments("extend in air"), Some([20, 0]));
+}
+
+#[test]
 fn wide_brackets_and_units_in_one_character_are_read() {
     let file = |header: &str| format!("{header}\n{}", two(";", 1.0, 1.0));
     for header in ["depth（µm）;Force（mN）", "depth(㎛);Force(mN)", "depth\u{3000}[µm];Ｆｏｒｃｅ [mN]"]
