@@ -116,7 +116,7 @@ fn maps_that_lost_lines_have_them() {
         (
             "map-landing",
             axis("groups.wavelength_over_radius", [0.04, 0.15], false),
-            axis("gap.wavelength", [0.0406, 0.0914], false),
+            axis("groups.amplitude_over_wavelength", [0.0056, 0.0126], false),
         ),
         (
             "map-start",
