@@ -9,7 +9,7 @@ use crate::store::{Loaded, Source, Store, StoreError};
 use clap::Args;
 use pulloff_engine::preset::called::key_called;
 use pulloff_engine::preset::{Preset, data, edge};
-use pulloff_engine::stability::COMPLIANCE;
+use pulloff_engine::stability::axis::set_by;
 use pulloff_engine::sweep::axis::overrides;
 use pulloff_engine::text::quote;
 use std::ffi::{OsStr, OsString};
@@ -84,8 +84,7 @@ impl Changes {
         for change in self.all() {
             let typed = change.split('=').next().unwrap_or_default().trim();
             let Ok(key) = key_called(preset, typed) else { continue };
-            let of_device = |axis: &'a str| if axis == COMPLIANCE { "path.control.stiffness" } else { axis };
-            if let Some(axis) = axes.iter().copied().find(|axis| overrides(of_device(axis), &key)) {
+            if let Some(axis) = axes.iter().copied().find(|axis| overrides(set_by(axis), &key)) {
                 let is_set = self.assignments.contains(&change);
                 let option = if is_set { format!("--set {}", quote(&key)) } else { "--control".to_owned() };
                 let what = format!("{option}: the axis {axis} gives each point its own");

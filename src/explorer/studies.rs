@@ -8,7 +8,7 @@ use super::map_axes::typed;
 use pulloff_engine::case::critical_force;
 use pulloff_engine::gap::shapes::split_mix::SplitMix64;
 use pulloff_engine::preset::edge::RATE;
-use pulloff_engine::preset::schema::Kind;
+use pulloff_engine::preset::schema::{Kind, STIFFNESS};
 use pulloff_engine::preset::{Key, Preset, Row, Value};
 use pulloff_engine::problem::Control;
 use pulloff_engine::progress::Progress;
@@ -38,9 +38,6 @@ const PEAK_FORCE: &str = "peak_force";
 const CRITICAL_FORCE: &str = "critical_force";
 /// How often progress is reported.
 const PACE: Duration = Duration::from_millis(100);
-
-/// The key of the stiffness of the loading device.
-const STIFFNESS: &str = "path.control.stiffness";
 
 /// The key of the seed of a random surface.
 const SEED: &str = "gap.seed";

@@ -22,6 +22,19 @@ fn with_ring() -> Session {
 }
 
 #[test]
+fn a_gap_inside_that_closes_is_no_snap_of_the_outer_edge() {
+    let mut session = with_ring();
+    while !session.status().starts_with("Event 4 of ") {
+        session.does(Id::NextEvent);
+    }
+    assert!(session.status().contains("lets an inner edge jump"), "{}", session.status());
+    let before = session.model.walker().unwrap().state.contact_radius;
+    session.does(Id::Jump);
+    let after = session.model.walker().unwrap();
+    assert!(!after.has_rings() && (after.state.contact_radius / before - 1.0).abs() < 0.01);
+}
+
+#[test]
 fn it_begins_at_the_first_touch_and_says_at_each_touch_what_can_be_done() {
     let mut session = begun();
     let start = session.model.walker().unwrap();

@@ -7,7 +7,7 @@ use crate::measured::{Abscissa, BranchError};
 use crate::preset::called::key_called;
 use crate::preset::data::{BASELINE, OFFSET, TILT};
 use crate::preset::invalid::{Invalid, of_unknown};
-use crate::preset::schema::{CHOOSERS, Kind, LIQUID_KEYS, RANGE_KEYS, Row};
+use crate::preset::schema::{CHOOSERS, Kind, LIQUID_KEYS, RANGE_KEYS, Row, STIFFNESS};
 use crate::preset::{Preset, Value, edge};
 use crate::progress::Stopped;
 use crate::text::{closest_key, greek, quote};
@@ -161,9 +161,6 @@ impl FitError {
     }
 }
 
-/// The key of the stiffness of the device.
-pub(super) const SPRING: &str = "path.control.stiffness";
-
 /// What a name after `--free` stands for.
 ///
 /// # Errors
@@ -200,12 +197,13 @@ pub fn target(preset: &Preset, abscissa: Abscissa, name: &str) -> Result<Target,
                    the range of such an adhesion";
         return Err(refused(why.to_owned()));
     }
-    if row.key == SPRING && preset.is_of_deflection() {
+    if row.key == STIFFNESS && preset.is_of_deflection() {
         let why = "is held: the points have the deflection of the spring, and the force, E* and gamma are all in proportion to its k. \
                    They are off by the same share as k is";
         return Err(refused(why.to_owned()));
     }
-    let others = [MODULUS, ADHESION, edge::CLOSING_ADHESION, SPRING, edge::REFERENCE_SPEED, edge::EXPONENT];
+    let others =
+        [MODULUS, ADHESION, edge::CLOSING_ADHESION, STIFFNESS, edge::REFERENCE_SPEED, edge::EXPONENT];
     let fits = row.key.starts_with("gap.") || others.iter().chain(&RANGE_KEYS).any(|key| row.key == *key);
     // That of a formula may have any sign: a fit keeps the one of its first guess, which is positive.
     let is_positive = match row.kind {

@@ -434,7 +434,7 @@ pub fn start(problem: &FitProblem, scan: bool, robust: bool, progress: &dyn Prog
         return found;
     }
     let compared = problem.thinned(COMPARED);
-    let around = settled(problem, &compared, problem.around_own(), scan, progress);
+    let around = by_distance(problem, &compared, problem.around_own(), scan, progress);
     let mut around = led(&compared, around, POOL, robust, progress);
     around.truncate(BEST);
     let other = best_of(&run, around, (scan, robust), progress);
@@ -449,7 +449,7 @@ fn ranked(problem: &FitProblem, scan: bool, robust: bool, progress: &dyn Progres
     let others = || problem.of_ranges(robust, progress).or_else(|| problem.of_rates(robust, progress));
     let candidates = if scan { others() } else { None }.unwrap_or_else(|| problem.candidates(scan));
     let compared = problem.thinned(COMPARED);
-    let mut ranked = settled(problem, &compared, candidates, scan, progress);
+    let mut ranked = by_distance(problem, &compared, candidates, scan, progress);
     if scan && problem.preset.gap.feature_length().is_some() {
         let early = may_end_early(&problem.preset, &problem.data);
         ranked = led(&compared, ranked, if early { MANY } else { POOL }, robust, progress);
@@ -457,7 +457,7 @@ fn ranked(problem: &FitProblem, scan: bool, robust: bool, progress: &dyn Progres
     ranked.truncate(BEST);
     // The values of a pull that are given may be guesses that its scan does not come near.
     if scan && is_pulled(&problem.preset) {
-        let own = settled(problem, &compared, problem.candidates(false), scan, progress);
+        let own = by_distance(problem, &compared, problem.candidates(false), scan, progress);
         ranked = own.into_iter().chain(ranked).collect();
     }
     ranked
@@ -465,7 +465,7 @@ fn ranked(problem: &FitProblem, scan: bool, robust: bool, progress: &dyn Progres
 
 /// The candidates, the first as it is, and all of them as they suit the smallest force and where x is zero, each with its
 /// distance, the nearest first.
-fn settled(
+fn by_distance(
     problem: &FitProblem,
     compared: &FitProblem,
     candidates: Vec<Vec<f64>>,

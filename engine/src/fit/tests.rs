@@ -675,3 +675,14 @@ fn a_range_of_the_adhesion_moves_the_curve_as_maugis_says() {
     let whole = 1.0 - 2.0 * tension / e * lo.tan();
     assert!(((whole - at[0]) * tension * tension / delta - 1.0).abs() < 1e-2, "{whole} {at:?} {delta}");
 }
+
+#[test]
+fn residuals_name_the_range_where_it_is_too_small_to_be_followed() {
+    let mut lens = crate::preset::read_shipped("lens").unwrap();
+    lens.set("material.adhesion", "dugdale".into()).unwrap();
+    for (strength, is_followed) in [(1e5, true), (1e12, false)] {
+        lens.set("material.cohesive_strength", strength.into()).unwrap();
+        let found = residuals::residuals_own(&lens);
+        assert_eq!(matches!(found, Err(FitError::SmallRange(..))), !is_followed, "{:?}", found.err());
+    }
+}

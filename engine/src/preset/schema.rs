@@ -136,6 +136,8 @@ pub struct Parameter {
     pub applies: Applies,
 }
 
+/// The key of the stiffness of the loading device.
+pub const STIFFNESS: &str = "path.control.stiffness";
 /// The key of the coefficient of a power law, whose dimension follows from the exponent.
 pub const COEFFICIENT: &str = "gap.coefficient";
 /// The key that says how the adhesion acts.

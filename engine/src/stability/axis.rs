@@ -2,7 +2,7 @@
 
 use crate::elementary::{ln, pow};
 use crate::preset::edge;
-use crate::preset::schema::{TURN_KEYS, table_of};
+use crate::preset::schema::{STIFFNESS, TURN_KEYS, table_of};
 use serde::{Deserialize, Serialize};
 use std::fmt;
 
@@ -39,6 +39,11 @@ pub struct AxisError {
     key: String,
     range: [f64; 2],
     expected: &'static str,
+}
+
+/// The key that an axis gives its values to: a compliance is that of the device.
+pub fn set_by(axis: &str) -> &str {
+    if axis == COMPLIANCE { STIFFNESS } else { axis }
 }
 
 /// Whether a key moves no state of a map: the states are the equilibria of one disc with an opening edge.

@@ -4,7 +4,7 @@
 //! the gap is linear in a number (a wave's amplitude), so is g, and two tables give it for all values. Any other number
 //! needs the table of its own gap at each value.
 
-use super::axis::{COMPLIANCE, MapAxis, is_blind};
+use super::axis::{COMPLIANCE, MapAxis, is_blind, set_by};
 use super::law::{EdgeJet, Law, root_of};
 use crate::disc::blend::Blend;
 use crate::disc::table::KeptTables;
@@ -123,8 +123,6 @@ pub enum FamilyError {
     Rivals(String, String),
 }
 
-/// The key of the device's stiffness.
-const STIFFNESS: &str = "path.control.stiffness";
 /// Most waves, or other features of the gap, in the disc at the start: with more, a map would take minutes.
 const MOST_FEATURES: f64 = 3000.0;
 
@@ -177,9 +175,7 @@ impl Family {
     /// [`FamilyError`].
     pub fn new(preset: &Preset, axes: Vec<MapAxis>) -> Result<Self, FamilyError> {
         for (k, axis) in axes.iter().enumerate() {
-            // The compliance is that of the device, 1/k.
-            let of_device = |key: &str| if key == COMPLIANCE { STIFFNESS } else { key }.to_owned();
-            let are_rivals = |other: &&MapAxis| are_rivals(&of_device(&other.key), &of_device(&axis.key));
+            let are_rivals = |other: &&MapAxis| are_rivals(set_by(&other.key), set_by(&axis.key));
             if let Some(other) = axes[..k].iter().find(are_rivals) {
                 return Err(FamilyError::Rivals(other.key.clone(), axis.key.clone()));
             }

@@ -1,13 +1,14 @@
 //! What the fit would be with another spring, or with a force that drifts.
 
 use super::super::least_squares::Ending;
-use super::super::options::{SPRING, letter};
+use super::super::options::letter;
 use super::super::problem::{FitProblem, FreeParameter, Target};
 use super::super::solve::{SolvedFit, solve};
 use crate::elementary::exp_m1;
 use crate::measured::Abscissa;
 use crate::measured::noise::range;
 use crate::preset::Value;
+use crate::preset::schema::STIFFNESS;
 use crate::problem::Control;
 use crate::progress::Progress;
 
@@ -31,14 +32,14 @@ pub(in crate::fit) fn of_spring(
     (robust, progress): (bool, &dyn Progress),
 ) -> Option<String> {
     let Control::Stiffness(k) = problem.preset.path.control else { return None };
-    if problem.parameters.iter().any(|p| p.target == Target::Key(SPRING.to_owned())) {
+    if problem.parameters.iter().any(|p| p.target == Target::Key(STIFFNESS.to_owned())) {
         return None;
     }
     let part = FitPart::of(problem, solved, robust, progress)?;
     let (mut told, mut plays) = (Vec::new(), false);
     for (factor, words) in [(1.1, "10 % larger"), (0.9, "10 % smaller")] {
         let mut other = part.problem.clone();
-        other.preset.set(SPRING, Value::Number(factor * k)).ok()?;
+        other.preset.set(STIFFNESS, Value::Number(factor * k)).ok()?;
         // The force is k times what was measured.
         if is_of_deflection {
             other.data.iter_mut().for_each(|datum| datum.point.force *= factor);
@@ -62,8 +63,8 @@ pub(in crate::fit) fn of_spring(
     plays.then(|| format!("with k {}", told.join("; with k ")))
 }
 
-/// What the fit would be to a force that drifts evenly with x; `None` where x does not tell the force, a tilt is free, both branches are
-/// fitted, which a drift parts, or it changes no value by what matters.
+/// What a force that drifts evenly from row to row would do to the values; `None` over a contact radius, with a tilt, and where both
+/// branches are fitted, which shows a drift, or no value changes by much.
 pub(in crate::fit) fn of_drift(
     problem: &FitProblem,
     solved: &SolvedFit,
@@ -72,7 +73,7 @@ pub(in crate::fit) fn of_drift(
 ) -> Option<String> {
     /// The drift over all rows, as a share of the range of the force.
     const DRIFT: f64 = 0.01;
-    /// A smaller change of a logarithm is told by none.
+    /// A smaller change of a logarithm is not worth a note.
     const MATTERS: f64 = 3e-3;
     let is_free = problem.parameters.iter().any(|p| p.target == Target::Tilt);
     // A tilt that is given is that of a drift.
@@ -92,7 +93,7 @@ pub(in crate::fit) fn of_drift(
         datum.point.force += DRIFT * forces * datum.point.at as f64 / rows;
     }
     let found = part.moved(&other).filter(|found| part.change(found) >= MATTERS)?;
-    // Which way a force drifts is not known, and which sign of the file that is matters little.
+    // It may drift either way.
     let signs: Vec<f64> = part.logarithms(&found).map(|(_, change)| change.signum()).collect();
     let each = part.logarithms(&found).zip(&signs).map(|((parameter, change), sign)| {
         let name = letter(&problem.preset, &parameter.key());
@@ -106,7 +107,7 @@ pub(in crate::fit) fn of_drift(
     ))
 }
 
-/// A part of the rows, which gives the effect of a change to a tenth of a per cent, if it is compared with a fit to the same part.
+/// A fit to a part of the rows. Compared with it, another fit to that part shows the effect of a change to a tenth of a per cent.
 struct FitPart<'a> {
     problem: FitProblem,
     own: Vec<f64>,
